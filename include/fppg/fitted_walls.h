@@ -67,6 +67,8 @@ struct FittedBody
     /// Of a combination of parts, per facet the mk of the part that it belongs to; else empty.
     std::vector<std::uint16_t> facet_mk;
     bool is_solid = false;
+    /// Of a closed surface that its draw does not fill: it has its layers inside.
+    bool has_layers_inside = false;
     std::string continued_along; ///< axes along which it goes on over the period, such as "x"
     std::shared_ptr<const RoundSurface> round; ///< null: the triangles are the shape
     std::shared_ptr<const CadSurface> cad;     ///< the same of CAD models
@@ -105,6 +107,8 @@ struct FittedBody
     /// The surface that the depth is measured from; null where the body is no layer.
     std::shared_ptr<const WallDepth> wall;
     bool is_layer() const { return owner != no_index; }
+    /// Whether its inside, as far as its layers reach, is no place for fluid.
+    bool has_no_fluid_inside() const { return is_solid || has_layers_inside; }
 
     /// Settles the shares by the measures.
     ///

@@ -99,8 +99,8 @@ public:
         farthest_ = (report.is_packed ? farthest_packed : farthest_of_case) * rest_.dp;
         set_depth_pressures(rest_, threads_);
         start_at_rest();
-        set_points();
         renew_lists(true);
+        keep_first_distances();
         renew_pressures();
         accelerate();
         report.before = judge();
@@ -157,6 +157,7 @@ private:
     struct State
     {
         RawArray<Vec3> positions;
+        RawArray<Vec3> looked_at; ///< places when walls were looked for
         RawArray<double> pressures;
         double mean = 0; ///< acceleration
     };
@@ -165,6 +166,7 @@ private:
     {
         State out;
         out.positions.resize(rest_.size());
+        out.looked_at.resize(rest_.size());
         out.pressures.resize(rest_.size());
         out.mean = mean;
         parallel_for(
@@ -172,6 +174,7 @@ private:
             [&](std::size_t i)
             {
                 out.positions[i] = rest_.positions[i];
+                out.looked_at[i] = looked_at_[i];
                 out.pressures[i] = rest_.pressures[i];
             },
             4096);
@@ -229,13 +232,16 @@ private:
             rest_.size(), threads_,
             [&](std::size_t i)
             {
+                // What passed a wall did so since walls were looked for then.
+                rest_.positions[i] = state.looked_at[i];
+                if (moves(i)) look_for_walls(i, true);
                 rest_.positions[i] = state.positions[i];
+                if (moves(i)) look_for_walls(i, false);
                 rest_.pressures[i] = state.pressures[i];
                 rest_.densities[i] = rest_.density(rest_.pressures[i]);
             },
-            1024);
+            64);
         keep_off_walls();
-        set_points();
         renew_lists(false);
         renew_pressures();
         accelerate();
@@ -260,11 +266,9 @@ private:
     bool moves(std::size_t i) const { return rest_.moves(i); }
     bool is_judged(std::size_t i) const { return rest_.roles[i] == RestRole::Moving; }
 
+    /// Of walls and of neighbours, where the particles are then.
     void renew_lists(bool is_first)
     {
-        list_.build(
-            field_.points, threads_, [&](std::size_t i) { return moves(i); },
-            [](std::size_t) { return true; });
         parallel_for(
             rest_.size(), threads_,
             [&](std::size_t i)
@@ -272,6 +276,10 @@ private:
                 if (moves(i)) look_for_walls(i, is_first);
             },
             64);
+        set_points();
+        list_.build(
+            field_.points, threads_, [&](std::size_t i) { return moves(i); },
+            [](std::size_t) { return true; });
     }
 
     /// Looks for the walls around a particle again where it may have come near to others.
@@ -295,11 +303,17 @@ private:
         }
         looked_at_[i] = rest_.positions[i];
         walls_[i] = found;
-        if (is_first) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
         const double behind = least_distance_behind * rest_.dp;
         if (is_behind_ && allowed_[i] > behind && walls_[i].distance < reach &&
             is_behind_(rest_.positions[i], walls_[i].distance * (1 + 1e-9)))
             allowed_[i] = behind;
+    }
+
+    /// What begins nearer to a wall than others may come stays no nearer.
+    void keep_first_distances()
+    {
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            if (moves(i)) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
     }
 
     /// Whether a particle came through a wall, as in the narrow end of a groove that more walls

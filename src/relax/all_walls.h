@@ -55,7 +55,7 @@ public:
             sides_.back().facets = std::move(section.facets);
             for (const Vec3& v : body.mesh.vertices) size_ = std::max(size_, largest_coordinate(v));
             normals_.insert(normals_.end(), normals.begin(), normals.end());
-            is_of_solid_.resize(normals_.size(), body.is_solid ? 1 : 0);
+            is_of_solid_.resize(normals_.size(), body.has_no_fluid_inside() ? 1 : 0);
             // Lines in the plane of a 2D case are not its facets.
             if (grid.is_2d || body.facet_mk.empty())
                 mks_.resize(normals_.size(), body.mk);
@@ -92,7 +92,7 @@ public:
     }
 
     const TriangleSoup& soup() const { return query_->soup(); }
-    /// Whether a place is in a solid body, also beside its edges; in 2D never.
+    /// Whether a place is in a body that has no fluid inside, also beside its edges; in 2D never.
     bool is_in_solid(const Vec3& p) const
     {
         int votes = 0;

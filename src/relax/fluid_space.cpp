@@ -225,24 +225,31 @@ private:
         bool is_behind = false; ///< the wall, with its middle
     };
 
-    /// The fluid to which a cell belongs, that is met on the way from a place to where all walls
-    /// are 2 dp away. Each step is shorter than the distance to the nearest wall, so that it passes
-    /// through none.
-    std::uint16_t fluid_beside(const CellAtWall& cell, const WallBall& ball) const
+    /// The fluid to which a cell belongs, that is met on the way from a ball between two walls to
+    /// where all walls are 2 dp away. Each step leads out of the narrowing between the walls that
+    /// the ball touches, stays inside it, and so passes through none.
+    std::uint16_t fluid_beside(const CellAtWall& cell, WallBall ball) const
     {
         constexpr int most_steps = 8;
-        const double dp = field_.grid.dp;
-        Vec3 p = ball.center;
-        std::uint16_t mk = fluid_at_place(cell, p, &ball);
-        for (int step = 0; step < most_steps && mk == 0; ++step)
+        constexpr double parallel = 1e-3;
+        const double far = off_the_wall * field_.grid.dp;
+        Vec3 foot = cell.foot;
+        for (int step = 0; step <= most_steps; ++step)
         {
-            const Vec3 off = p - closest_(p, off_the_wall * dp);
-            const double distance = norm(off);
-            if (!(distance > 0 && distance < off_the_wall * dp * (1 - 1e-9))) break;
-            p = p + off * (std::min(0.95 * distance, off_the_wall * dp - distance) / distance);
-            mk = fluid_at_place(cell, p, nullptr);
+            const std::uint16_t mk = fluid_at_place(cell, ball.center, &ball);
+            const Vec3 away = 2 * ball.center - foot - ball.other;
+            const double length = norm(away);
+            if (mk != 0 || length < parallel * ball.radius) return mk;
+            const Vec3 p = ball.center + (0.95 * ball.radius / length) * away;
+            foot = closest_(p, far);
+            const double distance = norm(p - foot);
+            if (!(distance > 0 && distance < far * (1 - 1e-9)))
+                return fluid_at_place(cell, p, nullptr);
+            ball = largest_ball(foot, (p - foot) / distance, far, closest_);
+            if (!(ball.radius < far * (1 - 1e-9)))
+                return fluid_at_place(cell, ball.center, nullptr);
         }
-        return mk;
+        return 0;
     }
 
     /// The fluid of the node nearest to a place, or to that under it in the level of the cell;
@@ -305,10 +312,10 @@ private:
         return down > steep;
     }
 
-    /// Whether the wall at `near.point` is a face of a solid body, seen from behind.
+    /// Whether the wall at `near.point` is a face of a body without fluid inside, seen from behind.
     bool is_inside_of(const AllWalls::Closest& near, const Vec3& up, bool is_before) const
     {
-        return !is_before && field_.walls.bodies[near.body].is_solid &&
+        return !is_before && field_.walls.bodies[near.body].has_no_fluid_inside() &&
                std::abs(dot(up, near.normal)) >= along_normal;
     }
 

@@ -216,6 +216,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
                                ? LayerSide::Behind
                                : settings.side.value_or(builder.side_without_fluid());
     const bool is_closed = has_volume && side == LayerSide::Behind;
+    out.body.has_layers_inside = is_closed && !out.body.is_solid;
     // Middles are looked for behind facets.
     if (side == LayerSide::Behind && plan.depths_dp[0] > 0)
         plan.middle_dp = plan.depths_dp[0] + 0.5 * merge_dp;
