@@ -53,6 +53,12 @@ std::size_t near_walls(const FluidAtRest& rest)
         std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
 }
 
+bool is_calmer(const BalanceReport& a, const BalanceReport& b)
+{
+    if (a.is_balanced != b.is_balanced) return a.is_balanced;
+    return a.after.mean < b.after.mean;
+}
+
 struct AtRest
 {
     FluidAtRest fluid;
@@ -146,8 +152,7 @@ BalanceReport balance_fluid(const CaseDef& def, const RunField& field,
             balancing.on_lattice(std::move(rest), report, field.grid, constants.mass_fluid);
         if (!other.report.is_balanced && (!out || !out->report.is_balanced))
             other = balancing.but_what_falls(std::move(other), field.grid, constants.mass_fluid);
-        if (!out || other.report.is_balanced || other.report.after.mean < out->report.after.mean)
-            out = std::move(other);
+        if (!out || is_calmer(other.report, out->report)) out = std::move(other);
     }
     take_over(def, out->fluid, threads, particles);
     return out->report;

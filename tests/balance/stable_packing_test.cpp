@@ -284,6 +284,28 @@ TEST(StablePacking, ComesToRestInAHalfFullBall)
     EXPECT_LT(number_after(made.output, "accelerations: mean "), 0.001) << made.output;
 }
 
+// No lattice is at rest with a cubic spline on a long beach. The calmer one is taken; it was the
+// cubic one whenever the other kept more than 0.01 g.
+TEST(StablePacking, IsTakenWhereItIsTheCalmerOfTwoThatMove)
+{
+    CaseText text;
+    text.dp = "0.02";
+    text.pointmin = R"(<pointmin x="-0.2" y="0" z="-0.2" />)";
+    text.pointmax = R"(<pointmax x="10.2" y="0" z="1.8" />)";
+    text.mainlist =
+        R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>bottom | left | right</boxfill><point x="0" y="-0.05" z="0" /><size x="10" y="0.1" z="1.65" /></drawbox>
+<drawprism><point x="1" y="-0.1" z="0" /><point x="10" y="-0.1" z="0" /><point x="10" y="-0.1" z="0.9" /><point x="1" y="0.1" z="0" /><point x="10" y="0.1" z="0" /><point x="10" y="0.1" z="0.9" /></drawprism>
+<setmkfluid mk="0" /><fillbox x="1" y="0" z="0.33"><modefill>void</modefill><point x="-0.1" y="-0.05" z="-0.1" /><size x="10.2" y="0.1" z="1.2" /></fillbox>)";
+    text.execution = R"(<parameters><parameter key="Kernel" value="1" /></parameters>)";
+    text = with_coefh(text, "1.2");
+    const auto left = [&](const std::string& band)
+    {
+        text.after_geometry = "<fppg><bodyfitted />" + band + "</fppg>";
+        return number_after(make(text).output, ": mean ");
+    };
+    EXPECT_LT(left(""), 0.9 * left(cubic));
+}
+
 TEST(StablePacking, KeepsEachFluidWithItsNumberInItsPlace)
 {
     const Vec3 inside{2.4, 0, 3};
