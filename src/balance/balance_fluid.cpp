@@ -53,6 +53,7 @@ std::size_t near_walls(const FluidAtRest& rest)
         std::count(rest.roles.begin(), rest.roles.end(), RestRole::Moving));
 }
 
+/// Of the same fluid on two lattices.
 bool is_calmer(const BalanceReport& a, const BalanceReport& b)
 {
     if (a.is_balanced != b.is_balanced) return a.is_balanced;

@@ -232,7 +232,7 @@ private:
             rest_.size(), threads_,
             [&](std::size_t i)
             {
-                // What passed a wall did so since walls were looked for then.
+                // As of then: whether a wall was passed shows from where walls were looked for last.
                 rest_.positions[i] = state.looked_at[i];
                 if (moves(i)) look_for_walls(i, true);
                 rest_.positions[i] = state.positions[i];
