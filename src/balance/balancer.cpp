@@ -232,7 +232,8 @@ private:
             rest_.size(), threads_,
             [&](std::size_t i)
             {
-                // As of then: whether a wall was passed shows from where walls were looked for last.
+                // As of then: whether a wall was passed shows from where walls were looked for
+                // last.
                 rest_.positions[i] = state.looked_at[i];
                 if (moves(i)) look_for_walls(i, true);
                 rest_.positions[i] = state.positions[i];
