@@ -57,7 +57,6 @@ constexpr int iterations_per_look = 10;  ///< at mDBC's pressures; each time gai
 constexpr int iterations_per_check = 10;
 /// Mean acceleration over gravity at which all is done.
 constexpr double calm = 0.0003;
-constexpr double spread_of_distances = 0.01; ///< over the least distance to a wall
 /// Where the mean is below this by first_settled, or later, the fluid keeps what it has: rows of
 /// the lattice that go on moving lose their order for 0.0005 g less (2D, 20 dp deep, after 0.1 s:
 /// 0.0029 instead of 0.0013 m/s). Fluid on a stable lattice goes on while that is cheap (2D,
@@ -311,22 +310,11 @@ private:
             allowed_[i] = behind;
     }
 
-    /// What begins nearer to a wall than others may come stays no nearer. The others may come a
-    /// little less near each, so that no two are pressed to one place in a corner.
+    /// What begins nearer to a wall than others may come stays no nearer.
     void keep_first_distances()
     {
         for (std::size_t i = 0; i < rest_.size(); ++i)
-            if (moves(i))
-                allowed_[i] = std::min(allowed_[i] * (1 + spread_of_distances * share_of(i)),
-                                       walls_[i].distance);
-    }
-
-    /// A number of each particle, from 0 to 1, of no order.
-    static double share_of(std::size_t i)
-    {
-        constexpr double golden = 0.61803398874989485;
-        const double x = static_cast<double>(i) * golden;
-        return x - std::floor(x);
+            if (moves(i)) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
     }
 
     /// Whether a particle came through a wall, as in the narrow end of a groove that more walls

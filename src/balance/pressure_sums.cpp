@@ -95,7 +95,7 @@ FPPG_LANES void sum_up(const PressureField& field, const PointGroup& group, cons
         if (!pushes) continue;
         const LaneMask is_close = (o.squared < least_squared) & (o.squared > 0.0f);
         if (set_lanes(is_close) == 0) continue;
-        const Lanes push = is_close ? (shape.least_pair - distance) / o.squared : Lanes{};
+        const Lanes push = is_close ? (shape.least_pair - distance) / distance : Lanes{};
         push_x += push * o.x;
         push_y += push * o.y;
         push_z += push * o.z;

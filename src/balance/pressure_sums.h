@@ -44,8 +44,7 @@ struct PairShape
 {
     float h_dp = 0; ///< smoothing length in dp
     bool is_cubic = false;
-    /// Neighbours nearer than this, dp, push with what is missing over their distance; 0: none
-    /// does.
+    /// Neighbours nearer than this, dp, push with what is missing; 0: none does.
     float least_pair = 0;
 };
 
