@@ -232,8 +232,8 @@ private:
             rest_.size(), threads_,
             [&](std::size_t i)
             {
-                // As of then: whether a wall was passed shows from where walls were looked for
-                // last.
+                // Whether it passed a wall is asked from where that state had last looked for
+                // walls.
                 rest_.positions[i] = state.looked_at[i];
                 if (moves(i)) look_for_walls(i, true);
                 rest_.positions[i] = state.positions[i];
@@ -313,8 +313,13 @@ private:
     /// What begins nearer to a wall than others may come stays no nearer.
     void keep_first_distances()
     {
-        for (std::size_t i = 0; i < rest_.size(); ++i)
-            if (moves(i)) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
+        parallel_for(
+            rest_.size(), threads_,
+            [&](std::size_t i)
+            {
+                if (moves(i)) allowed_[i] = std::min(allowed_[i], walls_[i].distance);
+            },
+            4096);
     }
 
     /// Whether a particle came through a wall, as in the narrow end of a groove that more walls

@@ -28,6 +28,15 @@ double left_of_gravity(const Result& r)
     return found.empty() ? 1 : std::stod(found[1]);
 }
 
+double nearest_pair_dp(const std::vector<Vec3>& points)
+{
+    double nearest = 1;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            nearest = std::min(nearest, norm(points[i] - points[k]) / dp);
+    return nearest;
+}
+
 const std::string no_penetration =
     R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /><parameter key="Kernel" value="2" /><parameter key="TimeMax" value="1" /></parameters>)";
 
@@ -371,11 +380,7 @@ TEST(FineTeeth, HaveNoPairsOfWaterBetweenThem)
                 Vec3{0.7, 0.6, 0.5};
         const std::vector<Vec3> fluid = tank_with(wheel, 0.35).fluid();
         ASSERT_GT(fluid.size(), 4000u);
-        double nearest = 1;
-        for (std::size_t i = 0; i < fluid.size(); ++i)
-            for (std::size_t k = 0; k < i; ++k)
-                nearest = std::min(nearest, norm(fluid[i] - fluid[k]) / dp);
-        EXPECT_GT(nearest, 0.5) << turn;
+        EXPECT_GT(nearest_pair_dp(fluid), 0.5) << turn;
     }
 }
 
@@ -481,11 +486,7 @@ TEST(PeriodicWalls, HaveEachParticleOfARowInAGapOnce)
     const Result made = make(text);
     ASSERT_EQ(made.code, 0) << made.output;
     EXPECT_TRUE(contains(made.output, "close the gap")) << made.output;
-    const std::vector<Vec3> walls = made.bound();
-    double nearest = 1e9;
-    for (std::size_t i = 0; i < walls.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, norm(walls[i] - walls[j]));
-    EXPECT_GT(nearest, 0.4 * 0.05);
+    EXPECT_GT(nearest_pair_dp(made.bound()), 0.4);
 }
 
 } // namespace
