@@ -182,14 +182,21 @@ struct FluidBand
     bool has_exact_mass = false;
 };
 
+/// Particles of fluid that are the points of a zone where fluid goes in and out.
+struct InletParticles
+{
+    Vec3 way;       ///< unit, in which fluid comes in; zero where that is not known
+    int layers = 1; ///< rows that the solver sets behind them and on them, dp apart
+};
+
 /// Where the solver lets fluid in and out: the zones of `<special><inout>`.
 struct InOutZones
 {
-    /// Absolute mks of fluid whose particles are the points of a zone, and the unit vectors in
-    /// which fluid comes in there; zero where that is not known.
-    std::map<std::uint16_t, Vec3> fluids;
+    std::map<std::uint16_t, InletParticles> fluids; ///< by absolute mk
     std::vector<Box3> boxes; ///< limits of the zones that are given by their shape
     std::vector<Vec3> ways;  ///< of each box, as above
+
+    bool is_empty() const { return fluids.empty() && boxes.empty(); }
 };
 
 /// What the solver is told on which places and densities depend.

@@ -26,8 +26,9 @@ struct FluidSpace
     /// stand for (dp^3 each), less what they stand for behind walls. Pockets do not count.
     std::map<std::uint16_t, double> missing;
     /// Of the volume that is missing, what is beside fluid that stays on the lattice at buffers of
-    /// `<vres>`, so that nothing may come there. At the ends of a period fluid spreads in the run.
-    double missing_at_buffers = 0;
+    /// `<vres>` and zones of `<inout>`, so that nothing may come there. At the ends of a period
+    /// fluid spreads in the run.
+    double missing_at_zones = 0;
     std::map<std::uint16_t, std::size_t> nodes;    ///< by mk of the fluid, those that stay
     std::map<std::uint16_t, std::size_t> left_out; ///< by mk of the fluid: in pockets
     double pocket_dp = 0; ///< walls nearer to one another have a pocket between them, if none moves

@@ -26,6 +26,7 @@
 #include "particles/simulation_domain.h"
 #include "platform/memory.h"
 #include "relax/gap_rows.h"
+#include "relax/inlet_nodes.h"
 #include "relax/wall_planes.h"
 #include "scene/part_colours.h"
 #include "walls/fluid_boxes.h"
@@ -299,6 +300,13 @@ void relax(CaseRunState& run, MadeCase& made)
     if (relaxes(made.def, made.field)) run.stage("Relax", [&] { run_relaxation(run, made); });
     for (const ClosedGap& gap : close_gaps(made.def, made.field, run.threads))
         log_gap(run, made.def, gap);
+    for (const InletRim& rim : leave_out_inlet_rims(made.def, made.field))
+        run.warn(fmt::format(
+            "{}: {} of {} particles of mkfluid {} are left out, the first at ({:g}, {:g}, {:g}): "
+            "the solver refuses points of an inlet that are nearer than 0.7 dp to a wall. As much "
+            "less fluid comes in; walls a whole number of dp apart leave no such points.",
+            made.def.file, thousands(rim.left_out), thousands(rim.of),
+            rim.mk - made.def.mk_fluid_first, rim.first.x, rim.first.y, rim.first.z));
     return_free_memory(); // surfaces were laid and relaxed piece by piece
     log_left_out(made.field.walls, run.log);
     for (const std::string& w : check_fit(made.def.fit, made.field.walls, made.field.grid, run.log))

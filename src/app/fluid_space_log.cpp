@@ -125,7 +125,7 @@ void expect_one_mass(const CaseDef& def, const FluidBand& band)
         fail("and <massfluid> both give the mass of fluid particles, expected one of them");
     if (def.vres.is_active())
         fail("is not possible with <vres>, whose zones exchange particles of rhop0 dp^3");
-    if (!def.solver.inout.fluids.empty() || !def.solver.inout.boxes.empty())
+    if (!def.solver.inout.is_empty())
         fail("is not possible with <inout>, whose zones let in particles dp apart");
 }
 

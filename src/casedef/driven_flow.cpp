@@ -20,7 +20,7 @@ bool has_zones_at_both_ends(const InOutZones& inout, int axis)
         has_up = has_up || way[axis] > along;
         has_down = has_down || way[axis] < -along;
     };
-    for (const auto& [mk, way] : inout.fluids) add(way);
+    for (const auto& [mk, inlet] : inout.fluids) add(inlet.way);
     for (const Vec3& way : inout.ways) add(way);
     return has_up && has_down;
 }

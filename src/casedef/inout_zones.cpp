@@ -105,13 +105,16 @@ Vec3 way_of(const Element& particles)
 }
 
 /// Adds the zone that a shape gives. False: it is not known.
-bool add_shape(const Element& shape, const CaseDef& def, InOutZones& zones)
+///
+/// layers  of the zone
+bool add_shape(const Element& shape, int layers, const CaseDef& def, InOutZones& zones)
 {
     if (shape.name == "particles")
     {
         const double mkfluid = number(&shape, "mkfluid");
         if (mkfluid >= 0 && mkfluid + def.mk_fluid_first < def.mk_bound_first)
-            zones.fluids[static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first)] = way_of(shape);
+            zones.fluids[static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first)] = {way_of(shape),
+                                                                                      layers};
         return true;
     }
     std::vector<Vec3> corners = corners_of(shape);
@@ -143,12 +146,16 @@ InOutZones read_inout_zones(const CaseDef& def, std::vector<std::string>& warnin
     const auto read_zone = [&](const Element& zone)
     {
         bool is_known = false;
+        constexpr double most_rows = 250; // as the solver
+        const int layers = static_cast<int>(
+            std::clamp(number(zone.find_child("layers"), "value"), 1.0, most_rows));
         for_each_read(zone,
                       [&](const Element& of)
                       {
                           if (of.name != "zone2d" && of.name != "zone3d") return;
-                          for_each_read(of, [&](const Element& shape)
-                                        { is_known = add_shape(shape, def, zones) || is_known; });
+                          for_each_read(
+                              of, [&](const Element& shape)
+                              { is_known = add_shape(shape, layers, def, zones) || is_known; });
                       });
         if (!is_known)
             warnings.push_back(fmt::format(

@@ -110,9 +110,9 @@ public:
         FluidSpace out;
         out.pocket_dp = pocket_;
         count_nodes(out);
-        if (adds_nodes_) add_nodes(cells, out);
         const double dp = field_.grid.dp;
         const LatticeStrips strips(def_, field_);
+        if (adds_nodes_) add_nodes(strips, cells, out);
         std::map<std::uint16_t, double> near_walls; ///< nodes
         for (const CellSpace& cell : cells)
         {
@@ -122,8 +122,9 @@ public:
             const double stood_for = stays ? dp * dp * dp : 0;
             if (cell.owner != 0) out.missing[cell.owner] += owned;
             if (stays) out.missing[cell.fluid] -= stood_for;
-            if (strips.has_beside_buffer(place_of(cell.node, field_.grid)))
-                out.missing_at_buffers += owned - stood_for;
+            const Vec3 p = place_of(cell.node, field_.grid);
+            if (strips.has_beside_buffer(p) || strips.has_beside_inlet(p))
+                out.missing_at_zones += owned - stood_for;
             if (cell.fluid != 0 && volume_ != 1) near_walls[cell.fluid] += 1;
         }
         // Nodes far from all walls stand for their cells, which may be no dp^3.
@@ -429,7 +430,7 @@ private:
     bool is_relaxed(std::uint16_t mk) const
     {
         const FluidBand* band = fluid_band(def_, mk);
-        return band != nullptr && band->is_active;
+        return band != nullptr && band->is_active && !def_.solver.inout.fluids.contains(mk);
     }
 
     void count_nodes(FluidSpace& out) const
@@ -491,15 +492,16 @@ private:
     }
 
     /// Nodes without fluid in cells that are nearly all the fluid's: rows beside walls of shapes
-    /// that were drawn up to a step before them.
-    void add_nodes(std::vector<CellSpace>& cells, FluidSpace& out)
+    /// that were drawn up to a step before them. At inlets the solver wants those that are drawn.
+    void add_nodes(const LatticeStrips& strips, std::vector<CellSpace>& cells, FluidSpace& out)
     {
         for (CellSpace& cell : cells)
         {
             const NodeIndex& n = cell.node;
+            const Vec3 p = place_of(n, field_.grid);
             if (cell.fluid != 0 || cell.owned < least_owned || !is_relaxed(cell.owner) ||
-                run_at(field_, {n.x, n.y, n.z}) != nullptr ||
-                all_.closest(place_of(n, field_.grid)).distance < off_added * field_.grid.dp)
+                run_at(field_, {n.x, n.y, n.z}) != nullptr || strips.is_behind_inlet(p) ||
+                all_.closest(p).distance < off_added * field_.grid.dp)
                 continue;
             paint(field_.slabs[n.x], {{n.y, n.z, n.z + 1}}, cell.owner);
             cell.fluid = cell.owner;

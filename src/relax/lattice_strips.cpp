@@ -2,13 +2,18 @@
 
 #include "fppg/vres.h"
 
+#include "relax/inlet_nodes.h"
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fppg
 {
 namespace
 {
+
+constexpr double before_inlet_dp = 0.7;
 
 Box3 grown(const Box3& box, double by)
 {
@@ -20,20 +25,6 @@ bool contains(const Box3& box, const Vec3& p)
     for (int axis = 0; axis < 3; ++axis)
         if (p[axis] < box.min[axis] || p[axis] > box.max[axis]) return false;
     return true;
-}
-
-std::vector<Vec3> nodes_of(const InOutZones& inout, const RunField& field)
-{
-    std::vector<Vec3> out;
-    const LatticeGrid& grid = field.grid;
-    for (std::size_t x = 0; x < field.slabs.size() && !inout.fluids.empty(); ++x)
-        for (const Run& run : field.slabs[x])
-            for (std::uint32_t z = run.z_begin; z < run.z_end; ++z)
-                if (!run.is_covered && inout.fluids.contains(run.mk))
-                    out.push_back({grid.origin.x + static_cast<double>(x) * grid.step(0),
-                                   grid.origin.y + run.y * grid.step(1),
-                                   grid.origin.z + z * grid.step(2)});
-    return out;
 }
 
 /// The box of all nodes of runs and particles of walls.
@@ -53,7 +44,10 @@ Box3 extent_of(const RunField& field)
 } // namespace
 
 LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
-    : reach_(2 * def.h + def.grid.dp), is_2d_(def.vres.is_2d), points_(reach_, 16)
+    : reach_(2 * def.h + def.grid.dp),
+      before_inlet_(before_inlet_dp * def.grid.dp),
+      is_2d_(def.vres.is_2d),
+      points_(reach_, 16)
 {
     constexpr double far = std::numeric_limits<double>::infinity();
     inside_ = {{-far, -far, -far}, {far, far, far}};
@@ -73,7 +67,12 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
             inside_.max[axis] = std::min(last[axis], extent.max[axis]) + half - reach_;
         }
     }
-    for (const Vec3& p : nodes_of(def.solver.inout, field)) points_.add(p);
+    for (const InletNode& node : inlet_nodes(def.solver.inout, field))
+    {
+        points_.add(node.place);
+        point_ways_.push_back(node.zone.way);
+    }
+    zone_ways_ = def.solver.inout.ways;
     for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));
     for (std::size_t z = 0; z < def.vres.zones.size(); ++z)
         if (def.vres.zones[z].parent == static_cast<int>(def.zone))
@@ -84,10 +83,30 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
 
 bool LatticeStrips::has(const Vec3& p) const
 {
-    return !contains(inside_, p) || has_beside_buffer(p) ||
-           std::any_of(zones_.begin(), zones_.end(),
+    return !contains(inside_, p) || has_beside_buffer(p) || has_beside_inlet(p);
+}
+
+bool LatticeStrips::has_beside_inlet(const Vec3& p) const
+{
+    return std::any_of(zones_.begin(), zones_.end(),
                        [&](const Box3& zone) { return contains(zone, p); }) ||
            points_.has_nearer(p, reach_);
+}
+
+bool LatticeStrips::is_behind_inlet(const Vec3& p) const
+{
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+    {
+        const Box3 box = grown(zones_[z], -reach_);
+        const Vec3 half = 0.5 * (box.max - box.min);
+        const Vec3& way = zone_ways_[z];
+        const double face =
+            half.x * std::abs(way.x) + half.y * std::abs(way.y) + half.z * std::abs(way.z);
+        if (contains(zones_[z], p) && dot(p - (box.min + half), way) < face + before_inlet_)
+            return true;
+    }
+    const std::optional<std::uint32_t> near = points_.nearest(p, reach_);
+    return near && dot(p - points_.points()[*near], point_ways_[*near]) < before_inlet_;
 }
 
 bool LatticeStrips::has_beside_buffer(const Vec3& p) const

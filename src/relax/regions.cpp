@@ -70,7 +70,7 @@ std::optional<double> number_between_layers(const FluidSpace& space, std::size_t
     double missing = 0;
     double nodes = 0;
     for (const auto& [mk, volume] : space.missing) missing += volume;
-    missing = (missing - space.missing_at_buffers) / (grid.dp * grid.dp * grid.dp);
+    missing = (missing - space.missing_at_zones) / (grid.dp * grid.dp * grid.dp);
     for (const auto& [mk, count] : space.nodes) nodes += static_cast<double>(count);
     const auto now = static_cast<double>(moving);
     if (grid.stretch != Vec3{1, 1, 1} && std::abs(missing) <= most_of_stretched * nodes) return now;

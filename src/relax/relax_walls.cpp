@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -245,7 +246,7 @@ private:
     /// The nodes of a region that move, in the order of its runs.
     std::vector<Mover> find_movers(const Region& region, const std::vector<SlabRun>& runs,
                                    const AllWalls& all, const NearBlocks& blocks,
-                                   const PointGrid& cut)
+                                   const std::function<bool(const Vec3&)>& stays)
     {
         const LatticeGrid& grid = field_.grid;
         const FittedWalls& walls = field_.walls;
@@ -256,9 +257,6 @@ private:
             bool is_outside = false;
             bool is_at_sides = false;
         };
-        const std::optional<LatticeStrips> strips =
-            region.is_solid ? std::nullopt
-                            : std::optional<LatticeStrips>(std::in_place, def_, field_);
         const auto look_at = [&](const SlabRun& r, std::vector<Candidate>& out)
         {
             const double band = region.band[r.run.mk];
@@ -271,9 +269,7 @@ private:
                     c.mover = {{r.x, r.run.y, z}, r.run.mk};
                     const Vec3 p = place_of(c.mover.node, grid);
                     const AllWalls::Closest near = all.closest(p, band * grid.dp);
-                    if (near.distance > band * grid.dp ||
-                        cut.has_nearer(p, reach_of_cuts_dp * grid.dp) || (strips && strips->has(p)))
-                        continue;
+                    if (near.distance > band * grid.dp || stays(p)) continue;
                     c.body = near.body;
                     c.is_outside = near.is_outside;
                     c.is_at_sides = near.distance < reach_of_sides_dp * grid.dp;
@@ -380,10 +376,10 @@ private:
         auto next = sliding.particles.begin();
         for (std::uint32_t i = 0; i < particles.size(); ++i)
         {
-            const bool is_sliding = next != sliding.particles.end() && *next == i;
-            if (is_sliding) ++next;
-            if (is_sliding) continue;
-            if (box.has(particles.positions[i], reach)) out.push_back(particles.positions[i]);
+            if (next != sliding.particles.end() && *next == i)
+                ++next;
+            else if (box.has(particles.positions[i], reach))
+                out.push_back(particles.positions[i]);
         }
         return out;
     }
@@ -442,7 +438,13 @@ private:
             is_of_inside ? find_sliding(field_.walls, region) : SlidingWalls{};
         if (runs.empty() && sliding.particles.empty()) return;
         const PointGrid cut = places_of_cuts(field_, region, all, threads_);
-        const std::vector<Mover> movers = find_movers(region, runs, all, near_blocks(side, 1), cut);
+        const std::optional<LatticeStrips> strips =
+            region.is_solid ? std::nullopt
+                            : std::optional<LatticeStrips>(std::in_place, def_, field_);
+        const auto stays = [&](const Vec3& p)
+        { return cut.has_nearer(p, reach_of_cuts_dp * grid.dp) || (strips && strips->has(p)); };
+        const std::vector<Mover> movers =
+            find_movers(region, runs, all, near_blocks(side, 1), stays);
         if (movers.empty() && sliding.particles.empty()) return;
         const std::vector<Vec3> held = find_held(region, runs, movers, near_blocks(side, 2));
         // Before walls all of whose particles stand behind their surface, a continuum from there on
@@ -466,12 +468,15 @@ private:
             return put_back(field_.walls, sliding.particles[i - movers.size()], p, grid.dp,
                             surroundings.closest);
         };
-        // So near to a cut nothing moved, and nothing comes.
-        const double off_cuts = (reach_of_cuts_dp - 1) * grid.dp;
-        const std::vector<Vec3> starts = cut.points().empty() ? std::vector<Vec3>{} : positions;
-        if (!cut.points().empty())
+        const bool has_limits = !cut.points().empty() || (strips && strips->are_at_inlets());
+        const std::vector<Vec3> starts = has_limits ? positions : std::vector<Vec3>{};
+        if (has_limits) // so near to a cut nothing moved, and nothing comes
             surroundings.may_come = [&](std::size_t i, const Vec3& p)
-            { return norm(p - starts[i]) < grid.dp || !cut.has_nearer(p, off_cuts); };
+            {
+                return norm(p - starts[i]) < grid.dp ||
+                       !(cut.has_nearer(p, (reach_of_cuts_dp - 1) * grid.dp) ||
+                         (strips && strips->keeps_out(p, is_before_layers)));
+            };
         surroundings.held = held;
         surroundings.walls = near_walls;
         surroundings.closest = [&](const Vec3& p, double within)
@@ -487,7 +492,8 @@ private:
         const double more = static_cast<double>(positions.size()) -
                             static_cast<double>(movers.size() + sliding.particles.size());
         const std::size_t relaxed = positions.size();
-        if (!sliding.particles.empty()) keep_slid(sliding, movers.size(), positions, done);
+        if (!sliding.particles.empty())
+            keep_slid(sliding, movers.size(), field_.walls, positions, done);
         keep_moved(region, all, movers, positions, done.sources);
         if (region.is_solid) take_new_nodes(field_.walls, region, more, field_.grid.dp);
         report_.parts.push_back({.what = region.what,
@@ -497,35 +503,6 @@ private:
                                  .removed = done.removed,
                                  .mean = done.shepard_mean,
                                  .variation = done.shepard_variation});
-    }
-
-    /// Puts wall particles that slid to their new places; those of the volume stay in `positions`.
-    void keep_slid(const SlidingWalls& sliding, std::size_t nodes, std::vector<Vec3>& positions,
-                   RelaxVolumeReport& done)
-    {
-        WallParticles& particles = field_.walls.particles;
-        VolumeParticles& volume = field_.walls.volume;
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < positions.size(); ++i)
-        {
-            const std::uint32_t source = done.sources[i];
-            if (source < nodes)
-            {
-                positions[count] = positions[i];
-                done.sources[count++] = source;
-                continue;
-            }
-            const std::uint32_t wall = sliding.particles[source - nodes];
-            if (i < done.kept)
-                particles.positions[wall] = positions[i];
-            else
-            {
-                volume.positions.push_back(positions[i]);
-                volume.mk.push_back(particles.mk[wall]);
-            }
-        }
-        positions.resize(count);
-        done.sources.resize(count);
     }
 
     /// Particles that left their nodes go into walls.volume; nodes left get the bit of the zone.

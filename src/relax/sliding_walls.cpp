@@ -75,4 +75,31 @@ Vec3 put_back(const FittedWalls& walls, std::uint32_t particle, const Vec3& p, d
     return project_to_depth(*body.wall, at, body.depth);
 }
 
+void keep_slid(const SlidingWalls& sliding, std::size_t nodes, FittedWalls& walls,
+               std::vector<Vec3>& positions, RelaxVolumeReport& done)
+{
+    WallParticles& particles = walls.particles;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+    {
+        const std::uint32_t source = done.sources[i];
+        if (source < nodes)
+        {
+            positions[count] = positions[i];
+            done.sources[count++] = source;
+            continue;
+        }
+        const std::uint32_t wall = sliding.particles[source - nodes];
+        if (i < done.kept)
+            particles.positions[wall] = positions[i];
+        else
+        {
+            walls.volume.positions.push_back(positions[i]);
+            walls.volume.mk.push_back(particles.mk[wall]);
+        }
+    }
+    positions.resize(count);
+    done.sources.resize(count);
+}
+
 } // namespace fppg

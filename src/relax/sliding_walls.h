@@ -27,4 +27,10 @@ SlidingWalls find_sliding(const FittedWalls& walls, const Region& region);
 Vec3 put_back(const FittedWalls& walls, std::uint32_t particle, const Vec3& p, double dp,
               const ClosestWallPoint& closest);
 
+/// Puts wall particles that slid to their new places; those of the volume stay in `positions`.
+///
+/// nodes  the first of `positions` were nodes, the others `sliding`; inserted ones come last
+void keep_slid(const SlidingWalls& sliding, std::size_t nodes, FittedWalls& walls,
+               std::vector<Vec3>& positions, RelaxVolumeReport& done);
+
 } // namespace fppg

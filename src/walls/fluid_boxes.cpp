@@ -82,7 +82,7 @@ std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
                 const auto inlet = inout.fluids.find(step.draw->state->mk.mk);
                 out.push_back(inlet == inout.fluids.end()
                                   ? box
-                                  : moved_in(box, inlet->second, scene.def->grid));
+                                  : moved_in(box, inlet->second.way, scene.def->grid));
             }
     }
     for (std::size_t z = 0; z < inout.boxes.size(); ++z)

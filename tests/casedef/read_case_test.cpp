@@ -1084,7 +1084,7 @@ TEST(Definition, KnowsTheWayInAtThePointsOfAnInlet)
     const CaseDef def = read(text);
     ASSERT_EQ(def.solver.inout.fluids.size(), 1u);
     EXPECT_EQ(def.solver.inout.fluids.begin()->first, def.mk_fluid_first + 3);
-    EXPECT_EQ(def.solver.inout.fluids.begin()->second, (Vec3{0, 1, 0}));
+    EXPECT_EQ(def.solver.inout.fluids.begin()->second.way, (Vec3{0, 1, 0}));
 }
 
 } // namespace

@@ -97,7 +97,7 @@ TEST_P(Openings, OfAnInletAreWideEnoughForTheSolver)
 {
     const double half = 0.4;
     Drawing drawing = tank(GetParam());
-    drawing.def.solver.inout.fluids[Drawing::fluid_mk] = {1, 0, 0};
+    drawing.def.solver.inout.fluids[Drawing::fluid_mk] = {{1, 0, 0}};
     drawing.fluid();
     drawing.box({low.x, -half, -half - 0.2}, {0, 2 * half, 2 * half});
     const RunField field = relaxed(drawing);
