@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -77,8 +78,12 @@ std::vector<Vec3> corners_of(const Element& shape)
     else if (shape.name != "circle")
         return {};
     const double radius = number(shape.find_child("radius"), "v");
-    const Vec3 low = a - Vec3{radius, radius, radius};
-    const Vec3 across = size + 2 * Vec3{radius, radius, radius};
+    const Vec3 way = vector(shape.find_child("direction"));
+    const auto half = [&](double along)
+    { return norm(way) > 0 ? radius * std::sqrt(1 - std::pow(along / norm(way), 2)) : radius; };
+    const Vec3 off{half(way.x), half(way.y), half(way.z)};
+    const Vec3 low = a - off;
+    const Vec3 across = size + 2 * off;
     std::vector<Vec3> out;
     for (unsigned corner = 0; corner < 8; ++corner)
         out.push_back(low + Vec3{(corner & 1U) != 0 ? across.x : 0,

@@ -33,6 +33,9 @@ constexpr double reach_of_cell = 0.87;
 /// A node is added where so much of its cell is a fluid's, this far off walls, dp.
 constexpr double least_owned = 0.8;
 constexpr double off_added = 0.4;
+/// At inlets, where fluid stays on the lattice, nodes alone make up the volume.
+constexpr double least_owned_at_inlets = 0.5;
+constexpr double off_added_at_inlets = 0.25;
 /// A node on a face of a solid is asked so far before it whether another solid is there, dp.
 constexpr double off_the_face = 1e-3;
 /// Walls whose ball is smaller than this may both cut a cell.
@@ -499,9 +502,12 @@ private:
         {
             const NodeIndex& n = cell.node;
             const Vec3 p = place_of(n, field_.grid);
-            if (cell.fluid != 0 || cell.owned < least_owned || !is_relaxed(cell.owner) ||
-                run_at(field_, {n.x, n.y, n.z}) != nullptr || strips.is_behind_inlet(p) ||
-                all_.closest(p).distance < off_added * field_.grid.dp)
+            const bool stays = strips.has_beside_inlet(p);
+            if (cell.fluid != 0 || cell.owned < (stays ? least_owned_at_inlets : least_owned) ||
+                !is_relaxed(cell.owner) || run_at(field_, {n.x, n.y, n.z}) != nullptr ||
+                strips.is_behind_inlet(p) ||
+                all_.closest(p).distance <
+                    (stays ? off_added_at_inlets : off_added) * field_.grid.dp)
                 continue;
             paint(field_.slabs[n.x], {{n.y, n.z, n.z + 1}}, cell.owner);
             cell.fluid = cell.owner;

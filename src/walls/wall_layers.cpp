@@ -3,6 +3,7 @@
 #include "fppg/exclusion_band.h"
 
 #include "core/parallel.h"
+#include "fit/near_nodes.h"
 #include "meshes/point_grid.h"
 #include "nodes/cell_nodes.h"
 #include "offset/offset_surface.h"
@@ -173,6 +174,36 @@ void take_nodes_between(const LatticeGrid& grid, int threads, FittedDraw& out)
     out.body.measures.node_volume = static_cast<double>(nodes) * grid.dp * grid.dp * grid.dp;
 }
 
+/// Covers the nodes of layers that lie in no body: those half a step around each, and what is
+/// farther from it and in the wall, as where a layer goes round the edge of a wall that sticks out
+/// into the fluid.
+void cover_layers(const LatticeGrid& grid, int threads, FittedDraw& out)
+{
+    for (const FittedBody& layer : out.layers)
+    {
+        if (layer.mesh.facets.empty()) continue;
+        unite_with(out.zone,
+                   by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
+                   threads);
+        const std::vector<std::vector<NearNode>> near =
+            find_near_nodes(soup_of(layer.mesh), grid, threads);
+        parallel_for(near.size(), threads,
+                     [&](std::size_t x)
+                     {
+                         Spans inside;
+                         for (const NearNode& node : near[x])
+                         {
+                             if (node.distance <= distance_units / 2) continue;
+                             const DepthPlace at =
+                                 layer.wall->at(grid.place(static_cast<double>(x), node.y, node.z));
+                             if (at.depth > 0 && at.depth <= layer.depth && !at.is_beyond_rim)
+                                 append_node(inside, node.y, node.z);
+                         }
+                         out.zone[x] = unite(out.zone[x], inside);
+                     });
+    }
+}
+
 } // namespace
 
 void measure_layers(const LatticeGrid& grid, FittedDraw& out)
@@ -233,14 +264,7 @@ void add_layers(const FitSettings& settings, const LatticeGrid& grid, int thread
     if (is_closed)
         take_nodes_between(grid, threads, out);
     else
-    {
-        for (const FittedBody& layer : out.layers)
-            if (!layer.mesh.facets.empty())
-                unite_with(
-                    out.zone,
-                    by_slab(exclusion_band(layer.mesh, layer.report, grid, {}, threads).zone, grid),
-                    threads);
-    }
+        cover_layers(grid, threads, out);
     measure_layers(grid, out);
 }
 

@@ -122,6 +122,47 @@ TEST(FluidBesideASphere, IsNumberedByXThenYThenZUnlessItIsBalanced)
     EXPECT_EQ(balanced.cloud.mk, even.cloud.mk);
 }
 
+/// The corner of a ledge of sheets is 0.12 dp beyond a row of nodes, 0.54 dp from the first layer
+/// behind it: nothing but the wall was there to keep fluid out.
+TEST(FluidBesideALedge, StaysOutOfTheCorner)
+{
+    for (const bool is_2d : {true, false})
+    {
+        const std::string y = is_2d ? R"(y="-0.25")" : R"(y="0")";
+        CaseText text;
+        text.dp = fmt::format("{}", dp);
+        text.pointmin = fmt::format(R"(<pointmin x="-0.3" y="{}" z="-0.3" />)", is_2d ? 0 : -0.3);
+        text.pointmax = fmt::format(R"(<pointmax x="1.8" y="{}" z="1.3" />)", is_2d ? 0 : 0.8);
+        const auto faces = [&](const std::string& fill, const std::string& size)
+        {
+            return fmt::format(
+                R"(<drawbox><boxfill>{}</boxfill><point x="0" {} z="0" /><size {} /></drawbox>)",
+                fill, y, size);
+        };
+        text.mainlist =
+            R"(<setdrawmode mode="full" /><setmkbound mk="0" />)" +
+            faces(is_2d ? "bottom | left | right" : "bottom | left | right | front | back",
+                  R"(x="1.5" y="0.5" z="1")") +
+            R"(<setmkbound mk="1" />)" + faces("top | right", R"(x="0.506" y="0.5" z="0.256")") +
+            fmt::format(
+                R"(<setmkfluid mk="0" /><fillbox x="1" y="{}" z="0.5"><modefill>void</modefill><point x="0" {} z="0" /><size x="1.5" y="0.5" z="0.75" /></fillbox>)",
+                is_2d ? 0 : 0.25, y);
+        text.after_geometry = R"(<fppg><bodyfitted /><fluidband active="false" /></fppg>)";
+        text.execution =
+            R"(<parameters><parameter key="Boundary" value="2" /><parameter key="SlipMode" value="2" /><parameter key="NoPenetration" value="1" /></parameters>)";
+        const ParticleCloud cloud = make(text).cloud;
+        std::size_t fluid = 0;
+        for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+        {
+            if (!is_fluid(cloud, i)) continue;
+            ++fluid;
+            const Vec3& p = cloud.positions[i];
+            EXPECT_FALSE(p.x < 0.506 && p.z < 0.256) << p.x << ' ' << p.y << ' ' << p.z;
+        }
+        EXPECT_GT(fluid, 200u);
+    }
+}
+
 /// How many fluid particles are off the lattice: where is_strip says so, and elsewhere.
 template <typename IsStrip>
 std::pair<std::size_t, std::size_t> off_lattice(const ParticleCloud& cloud, const IsStrip& is_strip)

@@ -1075,16 +1075,30 @@ TEST(Definition, TurnsZonesOfInOutAsTheSolver)
     }
 }
 
+TEST(Definition, TakesARoundZoneForADisk)
+{
+    CaseText text;
+    text.after_geometry = "<fppg><bodyfitted /></fppg>";
+    text.execution +=
+        R"(<special><inout><inoutzone><zone3d><circle><point x="0.7" y="0.5" z="0.1" /><radius v="0.2" /><direction x="0.6" y="0" z="0.8" /></circle></zone3d></inoutzone></inout></special>)";
+    const CaseDef def = read(text);
+    ASSERT_EQ(def.solver.inout.boxes.size(), 1u);
+    const Box3& box = def.solver.inout.boxes[0];
+    EXPECT_LT(norm(box.min - Vec3{0.54, 0.3, -0.02}), 1e-12);
+    EXPECT_LT(norm(box.max - Vec3{0.86, 0.7, 0.22}), 1e-12);
+}
+
 TEST(Definition, KnowsTheWayInAtThePointsOfAnInlet)
 {
     CaseText text;
     text.after_geometry = "<fppg><bodyfitted /></fppg>";
     text.execution +=
-        R"(<special><inout><inoutzone><zone3d><particles mkfluid="3" direction="back" /></zone3d></inoutzone></inout></special>)";
+        R"(<special><inout><inoutzone><layers value="4" /><zone3d><particles mkfluid="3" direction="back" /></zone3d></inoutzone></inout></special>)";
     const CaseDef def = read(text);
     ASSERT_EQ(def.solver.inout.fluids.size(), 1u);
     EXPECT_EQ(def.solver.inout.fluids.begin()->first, def.mk_fluid_first + 3);
     EXPECT_EQ(def.solver.inout.fluids.begin()->second.way, (Vec3{0, 1, 0}));
+    EXPECT_EQ(def.solver.inout.fluids.begin()->second.layers, 4);
 }
 
 } // namespace
