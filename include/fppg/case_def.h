@@ -187,16 +187,26 @@ struct InletParticles
 {
     Vec3 way;       ///< unit, in which fluid comes in; zero where that is not known
     int layers = 1; ///< rows that the solver sets behind them and on them, dp apart
+    int line = 0;
+};
+
+/// A zone where fluid goes in and out that is given by its shape.
+struct InletShape
+{
+    Box3 box; ///< about it
+    Vec3 way; ///< as of InletParticles
+    int layers = 1;
+    int line = 0;
+    std::vector<Vec3> points; ///< that the solver sets; empty where that is not known
 };
 
 /// Where the solver lets fluid in and out: the zones of `<special><inout>`.
 struct InOutZones
 {
     std::map<std::uint16_t, InletParticles> fluids; ///< by absolute mk
-    std::vector<Box3> boxes; ///< limits of the zones that are given by their shape
-    std::vector<Vec3> ways;  ///< of each box, as above
+    std::vector<InletShape> shapes;
 
-    bool is_empty() const { return fluids.empty() && boxes.empty(); }
+    bool is_empty() const { return fluids.empty() && shapes.empty(); }
 };
 
 /// What the solver is told on which places and densities depend.

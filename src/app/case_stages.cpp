@@ -11,6 +11,7 @@
 #include "app/body_table.h"
 #include "app/buffer_check.h"
 #include "app/fit_check.h"
+#include "app/inlet_check.h"
 #include "app/lattice_fluid.h"
 #include "app/layer_gaps.h"
 #include "app/motion_check.h"
@@ -122,6 +123,7 @@ void check_blocks(CaseRunState& run, const MadeCase& made)
     tell(check_motion(def, made.particles));
     tell(check_layer_gaps(def, made.particles, made.field.walls.gaps));
     tell(check_floor(def, made.particles));
+    tell(check_inlets(def, made.particles));
     if (def.vres.is_active() && def.zone + 1 < def.vres.zones.size()) return;
     tell(check_mks(def, run.mks));
     tell(check_unions(def));

@@ -31,30 +31,16 @@ public:
 
     std::vector<std::string> run()
     {
-        if (!def_.vres.is_active() && set_domain())
-            for_each_moving(def_.motion, [&](const Element& object, const MotionChain& chain)
-                            { check(object, chain); });
+        const std::optional<Box3> domain =
+            def_.vres.is_active() ? std::nullopt : solver_domain(def_, particles_);
+        if (!domain) return {};
+        domain_ = *domain;
+        for_each_moving(def_.motion, [&](const Element& object, const MotionChain& chain)
+                        { check(object, chain); });
         return std::move(found_);
     }
 
 private:
-    /// False where it is not known.
-    bool set_domain()
-    {
-        const auto parameters =
-            std::find_if(def_.execution.begin(), def_.execution.end(),
-                         [](const Element& e) { return e.name == "parameters"; });
-        const Element none;
-        const Element& given = parameters == def_.execution.end() ? none : *parameters;
-        domain_ = solver_domain(given, def_.file,
-                                {{particles_.pos_min, particles_.pos_max},
-                                 def_.grid.dp,
-                                 def_.h,
-                                 def_.grid.is_periodic,
-                                 def_.grid.is_2d});
-        return !has_old_domain(given);
-    }
-
     void check(const Element& object, const MotionChain& chain)
     {
         const auto mkbound = static_cast<int>(number_or(object, "ref", -1));

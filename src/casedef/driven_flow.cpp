@@ -21,7 +21,7 @@ bool has_zones_at_both_ends(const InOutZones& inout, int axis)
         has_down = has_down || way[axis] < -along;
     };
     for (const auto& [mk, inlet] : inout.fluids) add(inlet.way);
-    for (const Vec3& way : inout.ways) add(way);
+    for (const InletShape& shape : inout.shapes) add(shape.way);
     return has_up && has_down;
 }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -92,6 +93,95 @@ std::vector<Vec3> corners_of(const Element& shape)
     return out;
 }
 
+/// Where points begin on a side, and how far apart they are: whole dp, or a little less where the
+/// side is nearly one dp longer.
+struct Side
+{
+    int count = 1;
+    double step = 0;
+
+    Side(double length, double dp) : step(dp)
+    {
+        count = static_cast<int>(length / dp);
+        if (length - dp * count > 0.95 * dp) step = length / ++count;
+        ++count;
+    }
+};
+
+/// Rings about the middle; where on them points begin is as in the solver (VecOrthogonal2).
+void add_ring_points(const Vec3& middle, double radius, const Vec3& way, double dp,
+                     std::vector<Vec3>& out)
+{
+    const Vec3 along = way.x != 0   ? Vec3{-way.z, 0, way.x}
+                       : way.y != 0 ? Vec3{0, -way.z, way.y}
+                                    : Vec3{way.z, 0, -way.x};
+    const Vec3 first = (1 / norm(along)) * along;
+    const Vec3 second = cross(way, first);
+    const int rings = std::max(1, static_cast<int>((radius + dp / 4) / dp));
+    for (int ring = 0; ring <= rings; ++ring)
+    {
+        const double at = radius * ring / rings;
+        const double around = 2 * std::numbers::pi;
+        const int count = std::max(1, static_cast<int>((around * at + dp / 2) / dp));
+        for (int i = 0; i < count; ++i)
+        {
+            const double angle = around * i / count;
+            out.push_back(middle + at * std::cos(angle) * first + at * std::sin(angle) * second);
+        }
+    }
+}
+
+/// The points that the solver sets in a line, box or circle, before any turn (v5.4,
+/// JSphInOutPoints::Create2d_Line, Create3d_Box, Create3d_Circle).
+///
+/// way  unit, before any turn
+std::vector<Vec3> points_in(const Element& shape, const Vec3& way, const LatticeGrid& grid)
+{
+    constexpr double most = 1e7; // a wrong size is for the solver to refuse
+    std::vector<Vec3> out;
+    const double dp = grid.dp;
+    const Vec3 a = vector(shape.find_child("point"));
+    if (shape.name == "line")
+    {
+        const Vec3 begin{a.x, grid.origin.y, a.z};
+        const Vec3 b = vector(shape.find_child("point2"));
+        const Vec3 along = Vec3{b.x, grid.origin.y, b.z} - begin;
+        if (!(norm(along) > 0) || norm(along) > most * dp) return out;
+        const Side side(norm(along), dp);
+        for (int i = 0; i < side.count; ++i)
+            out.push_back(begin + (i * side.step / norm(along)) * along);
+    }
+    else if (shape.name == "box")
+    {
+        const Vec3 size = vector(shape.find_child("size"));
+        if (size.x < 0 || size.y < 0 || size.z < 0 ||
+            (size.x / dp + 1) * (size.y / dp + 1) * (size.z / dp + 1) > most)
+            return out;
+        const Side x(size.x, dp), y(size.y, dp), z(size.z, dp);
+        for (int k = 0; k < z.count; ++k)
+            for (int j = 0; j < y.count; ++j)
+                for (int i = 0; i < x.count; ++i)
+                    out.push_back(a + Vec3{i * x.step, j * y.step, k * z.step});
+    }
+    else if (const double radius = number(shape.find_child("radius"), "v");
+             radius >= 0 && radius / dp < std::sqrt(most) && norm(way) > 0)
+        add_ring_points(a, radius, way, dp, out);
+    return out;
+}
+
+/// The way in which fluid comes in through a shape, unit; zero where it is not known.
+Vec3 way_through(const Element& shape)
+{
+    const Element* direction = shape.find_child("direction");
+    Vec3 way = vector(direction);
+    if (direction == nullptr && shape.name == "line")
+    {
+        const Vec3 along = vector(shape.find_child("point2")) - vector(shape.find_child("point"));
+        way = {-along.z, 0, along.x};
+    }
+    return norm(way) > 0 ? (1 / norm(way)) * way : Vec3{};
+}
+
 /// The way in which fluid comes in, of `<particles direction="right">`.
 Vec3 way_of(const Element& particles)
 {
@@ -106,7 +196,7 @@ Vec3 way_of(const Element& particles)
     const std::string name = lower_case(trimmed(*text));
     for (const auto& [word, way] : ways)
         if (name == word) return way;
-    return {};
+    return way_through(particles); // "custom"
 }
 
 /// Adds the zone that a shape gives. False: it is not known.
@@ -118,8 +208,8 @@ bool add_shape(const Element& shape, int layers, const CaseDef& def, InOutZones&
     {
         const double mkfluid = number(&shape, "mkfluid");
         if (mkfluid >= 0 && mkfluid + def.mk_fluid_first < def.mk_bound_first)
-            zones.fluids[static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first)] = {way_of(shape),
-                                                                                      layers};
+            zones.fluids[static_cast<std::uint16_t>(mkfluid + def.mk_fluid_first)] = {
+                way_of(shape), layers, shape.line};
         return true;
     }
     std::vector<Vec3> corners = corners_of(shape);
@@ -137,9 +227,15 @@ bool add_shape(const Element& shape, int layers, const CaseDef& def, InOutZones&
         box.add(*by_euler + Vec3{reach, reach, reach});
         box.add(*by_euler - Vec3{reach, reach, reach});
     }
-    zones.boxes.push_back(box);
-    const Vec3 way = turn(vector(shape.find_child("direction"))) - turn(Vec3{});
-    zones.ways.push_back(norm(way) > 0 && !by_euler ? (1 / norm(way)) * way : Vec3{});
+    const Vec3 way = way_through(shape);
+    InletShape zone{box, {}, layers, shape.line, {}};
+    if (!by_euler)
+    {
+        zone.way = turn(way) - turn(Vec3{});
+        zone.points = points_in(shape, way, def.grid);
+        for (Vec3& p : zone.points) p = turn(p);
+    }
+    zones.shapes.push_back(std::move(zone));
     return true;
 }
 

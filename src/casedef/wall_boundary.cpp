@@ -189,12 +189,14 @@ void draw_shells_once(CaseDef& def)
 void settle_boundaries(const AttributeReader& read, CaseDef& def)
 {
     def.solver.boundary = whole_parameter(def, "Boundary").value_or(1);
+    std::vector<std::string> unknown;
+    def.solver.inout = read_inout_zones(def, unknown);
     if (def.fit.is_empty()) return;
+    def.warnings.insert(def.warnings.end(), unknown.begin(), unknown.end());
     def.solver.slip_mode = whole_parameter(def, "SlipMode").value_or(1);
     def.solver.no_penetration = def.solver.boundary == 2 && def.solver.slip_mode >= 2 &&
                                 whole_parameter(def, "NoPenetration").value_or(0) == 1;
     def.solver.kernel = whole_parameter(def, "Kernel").value_or(2);
-    def.solver.inout = read_inout_zones(def, def.warnings);
     def.solver.flexible = flexible_mks(read, def);
     const std::optional<int> parameter = whole_parameter(def, "Boundary");
     const bool is_mdbc = parameter == 2;

@@ -168,14 +168,16 @@ void add_inlet(CasePlan& plan, const std::string& entry)
             "or "
             "a sheet of one that is drawn into the opening",
             part.path, place_text(face.middle), 100 * inlet.face.filled, outline_text(inlet.face)));
-    if (colon == std::string::npos) part.role = PartRole::Inlet;
+    inlet.is_sheet = colon == std::string::npos;
+    if (inlet.is_sheet) part.role = PartRole::Inlet;
     read_speed(entry.substr(equal + 1), inlet);
     plan.propose(
         "inlet " + left,
         fmt::format("{} m/s along ({})", short_number(inlet.speed), way_text(inlet.direction)),
         fmt::format("through {} at {}, {} l/min", outline_text(inlet.face),
                     place_text(inlet.face.middle), short_number(60000 * inlet.speed * face.area)),
-        "The zone stands 5 dp before the face, as its 4 layers of particles reach back from it.");
+        "The zone stands 5 dp before the face or more, as its 4 layers of particles reach back "
+        "from it.");
     plan.inlets.push_back(inlet);
 }
 

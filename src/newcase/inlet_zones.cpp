@@ -1,9 +1,16 @@
 #include "newcase/xml_lines.h"
 
+#include "fppg/error.h"
+
+#include "meshes/mesh_query.h"
+#include "shapes/round_facets.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace fppg
 {
@@ -13,8 +20,14 @@ namespace
 
 /// Layers of particles behind the plane of a zone.
 constexpr int zone_layers = 4;
-/// How far the plane stands before the face: its layers, and what walls take there; dp.
+/// How far the plane stands before the face: its layers, and what walls take there; dp. Farther
+/// where something else is in the way, as the rest of a wall that a sheet stands in.
 constexpr double before_face = zone_layers + 1;
+constexpr double farthest_before_face = 12;
+constexpr double farther = 0.5;
+/// Points of a zone keep off walls, dp: particles of modified boundaries stand half a dp behind
+/// these, and the solver refuses them nearer than 0.7 dp (v5.4, JSphInOut).
+constexpr double off_walls = 0.25;
 
 /// A right-handed turn.
 struct Turn
@@ -125,7 +138,84 @@ void write_speed(const FluidInlet& inlet, XmlLines& xml)
     xml.close("imposevelocity");
 }
 
+/// Where the outermost points of a zone, and one in its middle, stand on the face itself.
+std::vector<Vec3> outline_points(const FluidInlet& inlet, double dp)
+{
+    constexpr int around = 24;
+    const FaceOutline& face = inlet.face;
+    std::vector<Vec3> out{face.middle};
+    const auto add = [&](double u, double v)
+    { out.push_back(face.middle + u * face.along + v * cross(inlet.direction, face.along)); };
+    if (!face.is_disc)
+    {
+        const double u = (points_on(face.length, dp) - 1) * dp / 2;
+        const double v = (points_on(face.width, dp) - 1) * dp / 2;
+        for (const double a : {-1.0, -0.5, 0.0, 0.5, 1.0})
+            for (const double side : {-1.0, 1.0})
+            {
+                add(a * u, side * v);
+                add(side * u, a * v);
+            }
+        return out;
+    }
+    const double radius = std::max(face.radius - dp / 2, dp / 2);
+    const auto [along, beside] = across(inlet.direction);
+    for (int i = 0; i < around; ++i)
+    {
+        const double angle = 2 * std::numbers::pi * i / around;
+        out.push_back(face.middle + radius * (std::cos(angle) * along + std::sin(angle) * beside));
+    }
+    return out;
+}
+
+/// The part that is in the way of a zone's rows, or between these and the face of a part; null
+/// where none is. A sheet may stand in a wall.
+const NewPart* in_the_way(const FluidInlet& inlet, double before, double dp,
+                          const std::vector<std::pair<const NewPart*, MeshQuery>>& walls)
+{
+    for (const Vec3& point : outline_points(inlet, dp))
+        for (double at_dp = inlet.is_sheet ? before - zone_layers + farther : 1; at_dp <= before;
+             at_dp += farther)
+        {
+            const Vec3 at = point + inlet.direction * (at_dp * dp);
+            for (const auto& [part, query] : walls)
+                if (query.closest_point(at, off_walls * dp).distance < off_walls * dp) return part;
+        }
+    return nullptr;
+}
+
 } // namespace
+
+void place_inlets(CasePlan& plan)
+{
+    std::vector<std::pair<const NewPart*, MeshQuery>> walls;
+    for (const NewPart& part : plan.parts)
+        if (part.role != PartRole::Inlet && !plan.inlets.empty())
+            walls.emplace_back(&part, MeshQuery(soup_of(part.mesh), plan.options->threads));
+    for (FluidInlet& inlet : plan.inlets)
+    {
+        const NewPart* obstacle = nullptr;
+        const auto fits = [&](double dp)
+        {
+            for (inlet.before_dp = before_face; inlet.before_dp <= farthest_before_face;
+                 inlet.before_dp += farther)
+            {
+                const NewPart* found = in_the_way(inlet, inlet.before_dp, dp, walls);
+                if (found == nullptr) return true;
+                if (obstacle == nullptr) obstacle = found;
+            }
+            return false;
+        };
+        if (fits(plan.dp)) continue;
+        double enough = plan.dp;
+        for (int k = 0; k < 20 && !fits(enough); ++k) enough *= 0.8;
+        throw GeometryError(fmt::format(
+            "--inlet {}: there is no room for the zone before its face: it begins {} dp or more "
+            "before the face, and its {} layers reach back from there; {} is in the way. Expected "
+            "a dp of {} m or less, or a face with more room before it",
+            inlet.name, before_face, zone_layers, obstacle->path, short_number(enough, 2)));
+    }
+}
 
 void write_inlet_zones(const CasePlan& plan, XmlLines& xml)
 {
@@ -134,8 +224,8 @@ void write_inlet_zones(const CasePlan& plan, XmlLines& xml)
     xml.open("inout");
     for (const FluidInlet& inlet : plan.inlets)
     {
-        const Vec3 place = inlet.face.middle + inlet.direction * (before_face * plan.dp);
-        xml.comment(fmt::format("{}: {} dp before its face.", inlet.name, before_face));
+        const Vec3 place = inlet.face.middle + inlet.direction * (inlet.before_dp * plan.dp);
+        xml.comment(fmt::format("{}: {} dp before its face.", inlet.name, inlet.before_dp));
         xml.open("inoutzone");
         xml.line(
             "<refilling value=\"0\" comment=\"0: full, 1: below the surface, 2: advanced\" />");

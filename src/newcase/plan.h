@@ -143,6 +143,8 @@ struct FluidInlet
     double area = 0;
     double speed = 0;        ///< m/s
     double litres_per_s = 0; ///< where a flow is asked for; 0: a speed
+    bool is_sheet = false;   ///< a part of its own, no wall
+    double before_dp = 0;    ///< how far before the face its zone stands (place_inlets())
 };
 
 /// Fluid and walls around the parts where none of them holds it: a basin, or a channel whose ends

@@ -3,6 +3,7 @@
 #include "core/json.h"
 #include "fppg/error.h"
 #include "newcase/plan.h"
+#include "newcase/xml_lines.h"
 
 #include <fmt/format.h>
 
@@ -49,6 +50,7 @@ NewCase propose_case(const NewCaseOptions& options)
     judge_overlaps(plan);
     choose_fluid(plan);
     choose_resolution(plan);
+    place_inlets(plan);
     choose_constants(plan);
     NewCase out;
     out.kind = new_case_kinds()[static_cast<std::size_t>(plan.kind)];

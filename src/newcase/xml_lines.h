@@ -52,6 +52,11 @@ private:
     int depth_ = 0;
 };
 
+/// Chooses how far before its face each zone stands.
+///
+/// throws  GeometryError where walls leave no room for its layers
+void place_inlets(CasePlan& plan);
+
 /// The zones of the solver where fluid comes in, <special> and all; nothing where it does not.
 void write_inlet_zones(const CasePlan& plan, XmlLines& xml);
 

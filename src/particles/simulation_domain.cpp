@@ -138,4 +138,19 @@ bool has_old_domain(const Element& parameters)
                        });
 }
 
+std::optional<Box3> solver_domain(const CaseDef& def, const CaseParticles& particles)
+{
+    const auto parameters = std::find_if(def.execution.begin(), def.execution.end(),
+                                         [](const Element& e) { return e.name == "parameters"; });
+    const Element none;
+    const Element& given = parameters == def.execution.end() ? none : *parameters;
+    if (has_old_domain(given)) return std::nullopt;
+    return solver_domain(given, def.file,
+                         {{particles.pos_min, particles.pos_max},
+                          def.grid.dp,
+                          def.h,
+                          def.grid.is_periodic,
+                          def.grid.is_2d});
+}
+
 } // namespace fppg

@@ -4,6 +4,7 @@
 #include "fppg/particles.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct DomainFacts
 /// throws      CaseError for a limit that is neither "default", "default + 0.5", "default + 10%" (-
 ///             for the least) nor a number
 Box3 solver_domain(const Element& parameters, const std::string& path, const DomainFacts& facts);
+
+/// The same of a case that was made; nothing where old keys give it.
+std::optional<Box3> solver_domain(const CaseDef& def, const CaseParticles& particles);
 
 /// Whether keys of old definitions, which solver_domain() does not know, give the domain.
 bool has_old_domain(const Element& parameters);

@@ -72,8 +72,11 @@ LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
         points_.add(node.place);
         point_ways_.push_back(node.zone.way);
     }
-    zone_ways_ = def.solver.inout.ways;
-    for (const Box3& box : def.solver.inout.boxes) zones_.push_back(grown(box, reach_));
+    for (const InletShape& shape : def.solver.inout.shapes)
+    {
+        zones_.push_back(grown(shape.box, reach_));
+        zone_ways_.push_back(shape.way);
+    }
     for (std::size_t z = 0; z < def.vres.zones.size(); ++z)
         if (def.vres.zones[z].parent == static_cast<int>(def.zone))
             children_.push_back(resized(def.vres.zones[z].outer_begin, reach_, def.vres.is_2d));

@@ -85,9 +85,8 @@ std::vector<Box3> boxes_of_fluid(const Scene& scene, int threads)
                                   : moved_in(box, inlet->second.way, scene.def->grid));
             }
     }
-    for (std::size_t z = 0; z < inout.boxes.size(); ++z)
-        if (inout.ways[z] != Vec3{})
-            out.push_back(moved_in(inout.boxes[z], inout.ways[z], scene.def->grid));
+    for (const InletShape& shape : inout.shapes)
+        if (shape.way != Vec3{}) out.push_back(moved_in(shape.box, shape.way, scene.def->grid));
     return out;
 }
 

@@ -96,9 +96,8 @@ bool bounds_lattice(const SceneStep& step, const FitDef& fit)
 bool may_move(const Scene& scene)
 {
     const CaseDef& def = *scene.def;
-    const InOutZones& inout = def.solver.inout;
-    if (def.fit.is_empty() || def.vres.is_active() || !inout.fluids.empty() ||
-        !inout.boxes.empty() || !relaxes_fluid(def))
+    if (def.fit.is_empty() || def.vres.is_active() || !def.solver.inout.is_empty() ||
+        !relaxes_fluid(def))
         return false;
     const auto remaining = scene.remaining();
     return std::none_of(remaining.begin(), remaining.end(),

@@ -130,6 +130,36 @@ TEST(InletOfAChannel, HasNoFluidBehindIt)
     expect_fluid_between_zones(make_channel(0, 2));
 }
 
+/// A box of points up to 0.5 dp off the floor: the solver stops there.
+TEST(InletGivenByItsShape, IsWarnedOfWhereTheSolverStops)
+{
+    for (const bool is_fitted : {false, true})
+        for (const double above : {0.5, 1.0})
+        {
+            CaseText text;
+            text.dp = fmt::format("{}", dp);
+            text.pointmin = R"(<pointmin x="-0.3" y="-0.1" z="-0.1" />)";
+            text.pointmax = R"(<pointmax x="0.5" y="0.3" z="0.3" />)";
+            text.mainlist =
+                R"(<setdrawmode mode="full" /><setmkbound mk="0" /><drawbox><boxfill>bottom</boxfill><point x="-0.2" y="0" z="0" /><size x="0.6" y="0.2" z="0.2" /></drawbox>)"
+                R"(<setmkfluid mk="0" />)" +
+                box_command(R"(x="0.1" y="0.02" z="0.02")", R"(x="0.2" y="0.16" z="0.1")");
+            text.after_geometry = is_fitted ? "<fppg><bodyfitted /></fppg>" : "";
+            text.execution = fmt::format(
+                R"(<special><inout><inoutzone><layers value="4" /><zone3d><box><point x="0.06" y="0.02" z="{}" /><size x="0" y="0.1" z="0.08" /><direction x="1" y="0" z="0" /></box></zone3d></inoutzone></inout></special><parameters><parameter key="Boundary" value="1" /></parameters>)",
+                above * dp);
+            const TemporaryFolder folder;
+            write_text(folder / "Case_Def.xml", text.text());
+            const RunResult result = run(folder, {"Case_Def", "out/Case"});
+            EXPECT_EQ(result.code, 0) << result.output;
+            EXPECT_EQ(contains(result.output,
+                               "of 30 points of this zone, or rows behind them, "
+                               "are nearer than 0.7 dp to boundary particles"),
+                      above < 0.7)
+                << result.output;
+        }
+}
+
 /// The side wall is 0.6 dp off the last row of a zone.
 TEST(InletOfAChannel, KeepsOffWallsAsTheSolverWants)
 {

@@ -1066,12 +1066,11 @@ TEST(Definition, TurnsZonesOfInOutAsTheSolver)
             R"(<direction x="0" y="1" z="0" /><rotateaxis {}><point1 x="0.7" y="0.5" z="0" /><point2 x="0.7" y="0.5" z="1" /></rotateaxis></box></zone3d></inoutzone></inout></special>)",
             angle);
         const CaseDef def = read(text);
-        ASSERT_EQ(def.solver.inout.boxes.size(), 1u);
-        const Box3& box = def.solver.inout.boxes[0];
+        ASSERT_EQ(def.solver.inout.shapes.size(), 1u);
+        const Box3& box = def.solver.inout.shapes[0].box;
         EXPECT_LT(norm(box.min - Vec3{0.7, 0.3, 0.1}), 1e-12);
         EXPECT_LT(norm(box.max - Vec3{0.7, 0.5, 0.5}), 1e-12);
-        ASSERT_EQ(def.solver.inout.ways.size(), 1u);
-        EXPECT_LT(norm(def.solver.inout.ways[0] - Vec3{1, 0, 0}), 1e-12);
+        EXPECT_LT(norm(def.solver.inout.shapes[0].way - Vec3{1, 0, 0}), 1e-12);
     }
 }
 
@@ -1082,10 +1081,57 @@ TEST(Definition, TakesARoundZoneForADisk)
     text.execution +=
         R"(<special><inout><inoutzone><zone3d><circle><point x="0.7" y="0.5" z="0.1" /><radius v="0.2" /><direction x="0.6" y="0" z="0.8" /></circle></zone3d></inoutzone></inout></special>)";
     const CaseDef def = read(text);
-    ASSERT_EQ(def.solver.inout.boxes.size(), 1u);
-    const Box3& box = def.solver.inout.boxes[0];
+    ASSERT_EQ(def.solver.inout.shapes.size(), 1u);
+    const Box3& box = def.solver.inout.shapes[0].box;
     EXPECT_LT(norm(box.min - Vec3{0.54, 0.3, -0.02}), 1e-12);
     EXPECT_LT(norm(box.max - Vec3{0.86, 0.7, 0.22}), 1e-12);
+}
+
+/// As many as the log of DualSPHysics v5.4 says ("InOut points") for these sizes and dp.
+TEST(Definition, SetsThePointsOfInletsAsTheSolver)
+{
+    const auto points = [](const char* dp, const std::string& zone)
+    {
+        CaseText text;
+        text.dp = dp;
+        text.after_geometry = "<fppg><bodyfitted /></fppg>";
+        text.execution += "<special><inout><inoutzone><zone3d>" + zone +
+                          "</zone3d></inoutzone></inout></special>";
+        const CaseDef def = read(text);
+        EXPECT_EQ(def.solver.inout.shapes.size(), 1u);
+        return def.solver.inout.shapes.at(0).points;
+    };
+    const auto disk = [&](const char* dp, double radius)
+    {
+        const std::vector<Vec3> found = points(
+            dp,
+            fmt::format(
+                R"(<circle><point x="0.7" y="0.5" z="0.1" /><radius v="{}" /><direction x="0.6" y="0" z="0.8" /></circle>)",
+                radius));
+        for (const Vec3& p : found)
+        {
+            EXPECT_NEAR(dot(p - Vec3{0.7, 0.5, 0.1}, Vec3{0.6, 0, 0.8}), 0, 1e-12);
+            EXPECT_LE(norm(p - Vec3{0.7, 0.5, 0.1}), radius + 1e-12);
+        }
+        return found.size();
+    };
+    EXPECT_EQ(disk("0.0455", 0.17778145), 62u);
+    EXPECT_EQ(disk("0.0135", 0.061122538), 71u);
+    EXPECT_EQ(disk("0.0266", 0.10844978), 65u);
+    EXPECT_EQ(disk("0.00937", 0.043238422), 73u);
+    EXPECT_EQ(disk("0.0305", 0.068437578), 22u);
+    const auto box = [&](const char* dp, const char* size)
+    {
+        return points(
+                   dp,
+                   fmt::format(
+                       R"(<box><point x="0" y="0" z="0" /><size x="0" y="{0}" z="{0}" /><direction x="1" y="0" z="0" /></box>)",
+                       size))
+            .size();
+    };
+    EXPECT_EQ(box("0.0423", "0.1692423"), 25u);
+    EXPECT_EQ(box("0.0465", "0.1395465"), 16u);
+    EXPECT_EQ(box("0.01", "0.0396"), 25u); // nearly 4 dp: nearer to one another
 }
 
 TEST(Definition, KnowsTheWayInAtThePointsOfAnInlet)

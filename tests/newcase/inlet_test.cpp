@@ -202,6 +202,37 @@ TEST(NewCaseInlet, OfASheetLooksIntoTheVesselWhicheverWayItsFacetsLook)
     }
 }
 
+/// In the middle of the wall, which is 2.5 dp thick: the last of its rows must be in the tank.
+TEST(NewCaseInlet, OfASheetInTheWallStandsBeforeTheWall)
+{
+    TankWithABlock parts(0);
+    TriangleSoup sheet;
+    add_quad(sheet, {-0.975, -0.1, 0}, {-0.975, 0.1, 0}, {-0.975, 0.1, 0.2}, {-0.975, -0.1, 0.2});
+    write_stl(parts.folder / "inlet.stl", sheet);
+    parts.options.inlets = {"inlet=0.4m/s"};
+    parts.options.dp = 0.01;
+    const ZonePoints zone = zone_points(propose_case(parts.options).xml, parts.options.dp);
+    EXPECT_GT(zone.points.front().x - 3 * parts.options.dp, -0.95 + 0.2 * parts.options.dp);
+    EXPECT_LT(zone.points.front().x, -0.95 + 5 * parts.options.dp);
+}
+
+/// The block is 0.05 m over the floor of the tank, 4 dp.
+TEST(NewCaseInlet, WithoutRoomForItsZoneIsAFault)
+{
+    TankWithABlock parts(0);
+    write_stl(parts.folder / "block.stl", box({-0.1, -0.1, -0.9}, {0.1, 0.1, -0.7}));
+    parts.options.inlets = {"block:-z=1m/s"};
+    parts.options.dp = 0.0125;
+    const std::string fault = fault_of(parts.options);
+    EXPECT_THAT(fault, HasSubstr("there is no room for the zone before its face"));
+    EXPECT_THAT(fault, HasSubstr("tank.stl is in the way"));
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(fault, found, std::regex("a dp of ([0-9.]+) m or less")));
+    parts.options.dp = std::stod(found[1]);
+    const ZonePoints zone = zone_points(propose_case(parts.options).xml, parts.options.dp);
+    EXPECT_GT(zone.points.front().z, -0.95);
+}
+
 TEST(NewCaseInlet, NamesTheFacesThatItCouldBe)
 {
     TankWithABlock parts(20);
