@@ -29,8 +29,9 @@ enum class Fault : std::uint8_t
     FluidNearWall,  ///< fluid nearer than 0.5 dp to a wall particle
     ClosePair,      ///< another particle is nearer than 0.3 dp
     OutsideDomain,  ///< outside the domain of the solver, or its place is no number
+    NearInlet,      ///< of a wall, nearer than 0.7 dp to points of a zone of <inout>
 };
-inline constexpr std::size_t fault_count = 12;
+inline constexpr std::size_t fault_count = 13;
 
 /// Short stable name, as in JSON: "no_normal".
 const char* fault_name(Fault fault);
@@ -40,6 +41,15 @@ struct BufferZone
 {
     Box3 outer;
     Box3 inner;
+};
+
+/// A zone where fluid goes in and out.
+struct CheckInlet
+{
+    std::optional<std::uint16_t> mk; ///< absolute, of the fluid whose particles are its points
+    std::vector<Vec3> points;        ///< of the others
+    Vec3 way;                        ///< unit, in which fluid comes in; zero: not known
+    int layers = 1;                  ///< rows that the solver sets, dp apart
 };
 
 /// A block of moving particles and where it is at even times, as maps of its places at the start.
@@ -70,6 +80,7 @@ struct CheckSetup
     std::array<bool, 3> is_periodic{};
     std::array<Vec3, 3> periodic; ///< from a place to its copy, of each axis that is periodic
     std::vector<BufferZone> buffers;
+    std::vector<CheckInlet> inlets;
     std::vector<std::string> notes; ///< what was not judged, whole sentences
 };
 

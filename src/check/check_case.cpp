@@ -6,6 +6,7 @@
 #include "files/particle_source.h"
 #include "fppg/check.h"
 #include "fppg/error.h"
+#include "meshes/point_grid.h"
 
 #include <fmt/format.h>
 
@@ -95,6 +96,28 @@ void judge_outside(const CheckParticles& particles, const CheckSetup& setup,
             if (!(at >= setup.domain.min[axis] && at <= setup.domain.max[axis]))
                 masks[i] |= bit_of(Fault::OutsideDomain);
         }
+}
+
+/// As the solver does (v5.4, JSphInOut::InitCheckProximity).
+void judge_near_inlets(const CheckParticles& particles, const CheckSetup& setup,
+                       const std::vector<std::uint32_t>& walls, std::vector<std::uint16_t>& masks)
+{
+    constexpr double nearest_dp = 0.7;
+    PointGrid rows(setup.dp, 64);
+    const auto add = [&](const CheckInlet& inlet, const Vec3& p)
+    {
+        for (int row = 0; row < inlet.layers; ++row) rows.add(p - (row * setup.dp) * inlet.way);
+    };
+    for (const CheckInlet& inlet : setup.inlets)
+    {
+        for (const Vec3& p : inlet.points) add(inlet, p);
+        for (std::size_t i = 0; i < masks.size() && inlet.mk; ++i)
+            if (particles.mk[i] == *inlet.mk) add(inlet, particles.positions[i]);
+    }
+    if (rows.points().empty()) return;
+    for (const std::uint32_t i : walls)
+        if (rows.has_nearer(particles.positions[i], nearest_dp * setup.dp))
+            masks[i] |= bit_of(Fault::NearInlet);
 }
 
 /// Floating bodies whose particles have no normals are plain DBC whatever the case says.
@@ -227,6 +250,7 @@ CheckReport check_particles(const CheckParticles& particles, CheckSetup setup, i
     for (const std::uint32_t i : walls)
         if (stops_in_buffer(report.setup, particles.positions[i], normal_of(particles, i)))
             masks[i] |= bit_of(Fault::InBufferZone);
+    judge_near_inlets(particles, report.setup, walls, masks);
     if (report.judges_normals)
     {
         const FillNodes nodes = fill_cavity(particles, report.setup, walls, fluid, threads);

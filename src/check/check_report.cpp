@@ -62,6 +62,9 @@ constexpr FaultWords words[fault_count] = {
      "They push each other off: look for parts that are drawn twice or overlap."},
     {"outside_domain", nullptr, "particles lie outside the domain",
      "The solver stops or takes them out: enlarge <simulationdomain>, or check <initials>."},
+    {"near_inlet", nullptr, "wall particles are nearer than 0.7 dp to points of a zone of <inout>",
+     "The solver stops there: its rows reach back from the zone, so put that farther from the wall "
+     "behind it, or make it narrower."},
 };
 
 const FaultWords& words_of(Fault fault)

@@ -1,5 +1,6 @@
 #include "check/read_setup.h"
 
+#include "casedef/inout_zones.h"
 #include "core/finite_number.h"
 #include "fppg/error.h"
 #include "particles/motion_path.h"
@@ -179,6 +180,27 @@ void read_motion(const SetupReader& reader, CheckSetup& setup)
     for_each_moving(*motion, follow);
 }
 
+void read_inlets(const SetupReader& reader, CheckSetup& setup)
+{
+    const Element* execution = reader.find({"execution"});
+    const Element* particles = reader.find({"execution", "particles"});
+    if (execution == nullptr || particles == nullptr) return;
+    CaseDef def;
+    def.execution = execution->children;
+    def.grid.dp = setup.dp;
+    def.grid.is_2d = setup.is_2d;
+    if (const Element* y = reader.find({"execution", "constants", "data2dposy"}))
+        def.grid.origin.y = reader.number_of(*y, "value");
+    def.mk_fluid_first = static_cast<std::uint16_t>(number_or(*particles, "mkfluidfirst", 1));
+    def.mk_bound_first = static_cast<std::uint16_t>(number_or(*particles, "mkboundfirst", 10));
+    std::vector<std::string> unknown;
+    const InOutZones zones = read_inout_zones(def, unknown);
+    for (const auto& [mk, inlet] : zones.fluids)
+        setup.inlets.push_back({mk, {}, inlet.way, inlet.layers});
+    for (const InletShape& shape : zones.shapes)
+        setup.inlets.push_back({std::nullopt, shape.points, shape.way, shape.layers});
+}
+
 } // namespace
 
 CheckSetup read_setup(const Element& root, const std::string& path, const Box3& particles)
@@ -208,6 +230,7 @@ CheckSetup read_setup(const Element& root, const std::string& path, const Box3& 
     setup.domain = solver_domain(parameters != nullptr ? *parameters : Element{}, path,
                                  {particles, setup.dp, setup.h, setup.is_periodic, setup.is_2d});
     read_motion(reader, setup);
+    read_inlets(reader, setup);
     const Element* vres = reader.find({"execution", "vres"});
     const std::string* id = vres != nullptr ? vres->find_attribute("selid") : nullptr;
     if (id != nullptr) read_buffers(reader, *vres, *id, setup);

@@ -236,6 +236,18 @@ TEST_P(CheckedTank, FindsParticlesOutsideTheDomain)
     EXPECT_EQ(found(tank_.check()), (Faults{{"outside_domain", 2}}));
 }
 
+TEST_P(CheckedTank, FindsWallsTooNearToAnInletAndTheRowsBehindIt)
+{
+    // The first layer of the floor stands at z = -0.05.
+    tank_.setup.inlets.push_back({std::nullopt, {{0.55, y_, 0.03}}, {1, 0, 0}, 3});
+    EXPECT_EQ(found(tank_.check()), Faults{});
+    tank_.setup.inlets.push_back({std::nullopt, {{0.55, y_, 0.01}}, {1, 0, 0}, 3});
+    EXPECT_EQ(found(tank_.check()), (Faults{{"near_inlet", 3}}));
+    tank_.setup.inlets = {{LayeredTank::fluid_mk, {}, {0, 0, 1}, 2}};
+    // Fluid on the floor is a dp off it; the row behind it is on the wall.
+    EXPECT_EQ(tank_.check().total(Fault::NearInlet), GetParam() ? 20U : 200U);
+}
+
 TEST_P(CheckedTank, SaysWhereNoPenetrationCannotAct)
 {
     // Walls of one sheet on the surface, as body-fitted ones for DBC.
