@@ -48,20 +48,23 @@ std::optional<Range> nodes_within(double low, double high, int axis, const Latti
 class FirstRows
 {
 public:
-    FirstRows(WetPlanesOfAxes planes, const LatticeGrid& grid)
-        : planes_(std::move(planes)), grid_(grid)
+    /// reach  of a row, steps
+    FirstRows(WetPlanesOfAxes planes, const LatticeGrid& grid, double reach)
+        : planes_(std::move(planes)), grid_(grid), reach_(reach)
     {
     }
 
-    /// nodes_within(), with the row beside a wall where an end lies within half a step of it.
+    /// nodes_within(), with the row beside a wall where an end is nearer to it than the reach.
     std::optional<Range> nodes_within(double low, double high, int axis) const
     {
         std::optional<Range> nodes = fppg::nodes_within(low, high, axis, grid_);
         if (!nodes) return nodes;
         const double step = grid_.step(axis);
         const auto [first, last] = *nodes;
-        if (low - (first - step) < 0.5 * step && is_row(first - step, 1, axis)) (*nodes)[0] -= step;
-        if (last + step - high < 0.5 * step && is_row(last + step, -1, axis)) (*nodes)[1] += step;
+        if (low - (first - step) < reach_ * step && is_row(first - step, 1, axis))
+            (*nodes)[0] -= step;
+        if (last + step - high < reach_ * step && is_row(last + step, -1, axis))
+            (*nodes)[1] += step;
         return nodes;
     }
 
@@ -81,6 +84,7 @@ private:
 
     WetPlanesOfAxes planes_;
     const LatticeGrid& grid_;
+    double reach_;
 };
 
 /// The outermost nodes between the nodes that the ends of a body are rounded to, as solid mode
@@ -105,13 +109,19 @@ void fit_limits(BoxRegion& box, double grown, int axis, const LatticeGrid& grid)
     high = (*nodes)[1] + grid.step(axis);
 }
 
-/// The body that a draw fills with this kind of mk; null: none.
-PolyhedronOp* body_of(MkKind kind, DrawOp& op)
+/// The polyhedron that is drawn with this kind of mk; null: none.
+PolyhedronOp* polyhedron_of(MkKind kind, DrawOp& op)
 {
     if (op.state->mk.kind != kind || op.state->mode == DrawMode::Wire || op.state->off_lattice)
         return nullptr;
     auto* shape = std::get_if<Shape>(&op.what);
-    auto* body = shape != nullptr ? std::get_if<PolyhedronOp>(shape) : nullptr;
+    return shape != nullptr ? std::get_if<PolyhedronOp>(shape) : nullptr;
+}
+
+/// The same where it is filled.
+PolyhedronOp* body_of(MkKind kind, DrawOp& op)
+{
+    PolyhedronOp* body = polyhedron_of(kind, op);
     return body != nullptr && body->solid != SolidKind::None ? body : nullptr;
 }
 
@@ -204,12 +214,18 @@ Planes planes_of_walls(const Scene& scene, int threads)
 void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, const WetPlanesOfAxes& planes,
                              CaseDef& def)
 {
-    const FirstRows rows(planes, def.grid);
-    const FirstRows none({}, def.grid);
+    constexpr double half = 0.5;
+    const FirstRows rows(planes, def.grid, half);
+    // Drawn from the node beside a wall on, as on a lattice that is not moved, it is half a step
+    // off the row; fluid that is missing there is added, particles of inlets are not.
+    const FirstRows rows_of_inlets(planes, def.grid, half + same_place);
+    const FirstRows none({}, def.grid, half);
     for (DrawOp& op : def.ops)
     {
-        if (PolyhedronOp* body = body_of(MkKind::Fluid, op))
-            end_body(*body, is_moved, def.grid, rows, op);
+        const bool is_inlet = def.solver.inout.fluids.contains(op.state->mk.mk);
+        if (PolyhedronOp* body =
+                is_inlet ? polyhedron_of(MkKind::Fluid, op) : body_of(MkKind::Fluid, op))
+            end_body(*body, is_moved, def.grid, is_inlet ? rows_of_inlets : rows, op);
         if (PolyhedronOp* body = body_of(MkKind::Void, op))
             end_body(*body, is_moved, def.grid, none, op);
         auto* edit = std::get_if<Edit>(&op.what);

@@ -93,10 +93,31 @@ bool bounds_lattice(const SceneStep& step, const FitDef& fit)
            (!step.combination && state.mode == DrawMode::Wire);
 }
 
+/// Whether particles that are points of zones go in or out along an axis: their plane stays.
+bool is_way_in(const InOutZones& inout, int axis)
+{
+    return std::any_of(inout.fluids.begin(), inout.fluids.end(),
+                       [axis](const auto& of) { return of.second.way[axis] != 0; });
+}
+
+/// Whether zones let fluid in along axes through particles of the lattice, which move with it; the
+/// points of the others stay where they are.
+bool move_along(const InOutZones& inout)
+{
+    return inout.shapes.empty() && std::all_of(inout.fluids.begin(), inout.fluids.end(),
+                                               [](const auto& of)
+                                               {
+                                                   const Vec3& way = of.second.way;
+                                                   return way.x * way.y == 0 &&
+                                                          way.y * way.z == 0 &&
+                                                          way.z * way.x == 0 && way != Vec3{};
+                                               });
+}
+
 bool may_move(const Scene& scene)
 {
     const CaseDef& def = *scene.def;
-    if (def.fit.is_empty() || def.vres.is_active() || !def.solver.inout.is_empty() ||
+    if (def.fit.is_empty() || def.vres.is_active() || !move_along(def.solver.inout) ||
         !relaxes_fluid(def))
         return false;
     const auto remaining = scene.remaining();
@@ -301,6 +322,7 @@ LatticeMove lattice_move(const Scene& scene, int threads)
         {
             if (def.grid.is_periodic[static_cast<std::size_t>(axis)]) continue;
             if (axis == 1 && def.grid.is_2d) continue;
+            if (is_way_in(def.solver.inout, axis)) continue;
             const std::optional<double> place = walls.of(axis).most();
             if (!place) continue;
             const double moved = *place - std::floor(*place);
@@ -308,7 +330,9 @@ LatticeMove lattice_move(const Scene& scene, int threads)
         }
         LatticeGrid moved = def.grid;
         moved.origin = moved.origin + move.shift;
-        move.to = stretch_between_walls(walls.planes(), moved, def.constants.gravity);
+        // As much fluid goes in as its particles stand for.
+        if (def.solver.inout.is_empty())
+            move.to = stretch_between_walls(walls.planes(), moved, def.constants.gravity);
         move.planes = walls.planes();
     }
     catch (const Error&)

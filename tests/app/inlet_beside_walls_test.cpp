@@ -70,7 +70,7 @@ Channel make_channel(double width, int boundary)
     const auto zone = [&](int mk, double x)
     {
         return fmt::format(R"(<setmkfluid mk="{}" />)", mk - 1) +
-               box({x, y, dp}, {0, wide - dp, 0.18});
+               box({x, is_2d ? y : dp / 2, dp}, {0, is_2d ? wide : wide - dp / 2, 0.18});
     };
     text.mainlist =
         fmt::format(
@@ -160,7 +160,26 @@ TEST(InletGivenByItsShape, IsWarnedOfWhereTheSolverStops)
         }
 }
 
-/// The side wall is 0.6 dp off the last row of a zone.
+/// Between layers fluid is half a dp off the floor, and the zones, drawn from the node beside it
+/// on, move with the lattice: across, not along their way.
+TEST(InletOfAChannel, IsInStepWithTheFloor)
+{
+    const Channel channel = make_channel(0, 2);
+    EXPECT_TRUE(contains(channel.result.output, "Lattice moved by (0, 0, 0.01) m"))
+        << channel.result.output;
+    expect_fluid_between_zones(channel);
+    for (const int mk : {inlet_mk, outlet_mk})
+    {
+        std::vector<Vec3> zone = channel.of(mk);
+        std::sort(zone.begin(), zone.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+        ASSERT_EQ(zone.size(), 10u);
+        for (std::size_t row = 0; row < zone.size(); ++row)
+            EXPECT_NEAR(zone[row].z, (static_cast<double>(row) + 0.5) * dp, 1e-9);
+    }
+    for (const Vec3& p : channel.of(fluid_mk)) EXPECT_GT(p.z, 0.45 * dp);
+}
+
+/// The lattice is in step with one side wall; the other is 0.6 dp off the last row of a zone.
 TEST(InletOfAChannel, KeepsOffWallsAsTheSolverWants)
 {
     const Channel channel = make_channel(0.252, 1);
