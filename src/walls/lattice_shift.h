@@ -32,7 +32,8 @@ struct LatticeMove
 /// An axis moves to the walls across it that have most of the area beside fluid; periodic ones
 /// stay. Nothing moves where something else than fluid stands on the lattice or depends on its
 /// place: walls that are not fitted, zones of vres, inlets that their shape gives; nor where fluid
-/// is not relaxed. Particles that are an inlet move with it, across the way in which fluid comes in.
+/// is not relaxed. Particles that are an inlet move with it, across the way in which fluid comes
+/// in, and it is not stretched: as much fluid goes in as they stand for.
 ///
 LatticeMove lattice_move(const Scene& scene, int threads);
 
