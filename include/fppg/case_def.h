@@ -182,6 +182,10 @@ struct FluidBand
     bool has_exact_mass = false;
 };
 
+/// Nearer to points of a zone where fluid goes in and out, and to the rows behind them, the solver
+/// refuses boundary particles and takes other fluid out, dp (v5.4, JSphInOut::InitCheckProximity).
+inline constexpr double off_inlets_dp = 0.7;
+
 /// Particles of fluid that are the points of a zone where fluid goes in and out.
 struct InletParticles
 {

@@ -17,8 +17,6 @@ namespace fppg
 namespace
 {
 
-/// Nearer than this the solver allows no boundary particle, dp.
-constexpr double nearest_dp = 0.7;
 /// So far points may be from their plane, dp.
 constexpr double off_plane_dp = 0.01;
 
@@ -84,7 +82,7 @@ Refused look_at(const Zone& zone, const PointGrid& walls, const std::optional<Bo
         for (int row = 0; row <= zone.layers; ++row)
         {
             const Vec3 at = p - (row * dp) * zone.way;
-            is_near = is_near || (row < zone.layers && walls.has_nearer(at, nearest_dp * dp));
+            is_near = is_near || (row < zone.layers && walls.has_nearer(at, off_inlets_dp * dp));
             is_outside = is_outside || (domain && !domain->has(at, 0));
         }
         if (is_near && out.near_walls++ == 0) out.first = p;
@@ -106,11 +104,12 @@ std::vector<std::string> check_inlets(const CaseDef& def, const CaseParticles& p
         for (const Vec3& p : zone.points)
             for (const int row : {0, zone.layers}) beside.add(p - (row * dp) * zone.way);
     for (const ParticleBlock& block : particles.blocks)
-        for_each_place(particles, block,
-                       [&](const Vec3& p)
-                       {
-                           if (block.type != ParticleType::Fluid && beside.has(p, dp)) walls.add(p);
-                       });
+        if (block.type != ParticleType::Fluid)
+            for_each_place(particles, block,
+                           [&](const Vec3& p)
+                           {
+                               if (beside.has(p, dp)) walls.add(p);
+                           });
     const std::optional<Box3> domain = solver_domain(def, particles);
     std::vector<std::string> out;
     for (const Zone& zone : zones)
@@ -132,7 +131,7 @@ std::vector<std::string> check_inlets(const CaseDef& def, const CaseParticles& p
             tell(
                 fmt::format("{} of {} points of this zone, or rows behind them, are nearer than "
                             "{:g} dp to boundary particles, the first at ({:.4g}, {:.4g}, {:.4g})",
-                            thousands(refused.near_walls), count, nearest_dp, refused.first.x,
+                            thousands(refused.near_walls), count, off_inlets_dp, refused.first.x,
                             refused.first.y, refused.first.z));
         else if (refused.outside > 0)
             tell(

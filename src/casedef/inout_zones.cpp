@@ -81,7 +81,10 @@ std::vector<Vec3> corners_of(const Element& shape)
     const double radius = number(shape.find_child("radius"), "v");
     const Vec3 way = vector(shape.find_child("direction"));
     const auto half = [&](double along)
-    { return norm(way) > 0 ? radius * std::sqrt(1 - std::pow(along / norm(way), 2)) : radius; };
+    {
+        if (!(norm(way) > 0)) return radius;
+        return radius * std::sqrt(std::max(0.0, 1 - std::pow(along / norm(way), 2)));
+    };
     const Vec3 off{half(way.x), half(way.y), half(way.z)};
     const Vec3 low = a - off;
     const Vec3 across = size + 2 * off;

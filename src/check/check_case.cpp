@@ -4,6 +4,7 @@
 #include "check/read_setup.h"
 #include "core/parallel.h"
 #include "files/particle_source.h"
+#include "fppg/case_def.h"
 #include "fppg/check.h"
 #include "fppg/error.h"
 #include "meshes/point_grid.h"
@@ -102,7 +103,6 @@ void judge_outside(const CheckParticles& particles, const CheckSetup& setup,
 void judge_near_inlets(const CheckParticles& particles, const CheckSetup& setup,
                        const std::vector<std::uint32_t>& walls, std::vector<std::uint16_t>& masks)
 {
-    constexpr double nearest_dp = 0.7;
     PointGrid rows(setup.dp, 64);
     const auto add = [&](const CheckInlet& inlet, const Vec3& p)
     {
@@ -116,7 +116,7 @@ void judge_near_inlets(const CheckParticles& particles, const CheckSetup& setup,
     }
     if (rows.points().empty()) return;
     for (const std::uint32_t i : walls)
-        if (rows.has_nearer(particles.positions[i], nearest_dp * setup.dp))
+        if (rows.has_nearer(particles.positions[i], off_inlets_dp * setup.dp))
             masks[i] |= bit_of(Fault::NearInlet);
 }
 

@@ -207,13 +207,18 @@ void place_inlets(CasePlan& plan)
             return false;
         };
         if (fits(plan.dp)) continue;
+        constexpr int most_tries = 20;
         double enough = plan.dp;
-        for (int k = 0; k < 20 && !fits(enough); ++k) enough *= 0.8;
+        int tries = 0;
+        while (tries < most_tries && !fits(enough *= 0.8)) ++tries;
         throw GeometryError(fmt::format(
             "--inlet {}: there is no room for the zone before its face: it begins {} dp or more "
             "before the face, and its {} layers reach back from there; {} is in the way. Expected "
-            "a dp of {} m or less, or a face with more room before it",
-            inlet.name, before_face, zone_layers, obstacle->path, short_number(enough, 2)));
+            "{}a face with more room before it",
+            inlet.name, before_face, zone_layers, obstacle->path,
+            tries == most_tries
+                ? ""
+                : fmt::format("a dp of {} m or less, or ", short_number(enough, 2))));
     }
 }
 

@@ -7,13 +7,6 @@
 
 namespace fppg
 {
-namespace
-{
-
-/// Nearer than this the solver allows no particle, dp.
-constexpr double nearest_dp = 0.7;
-
-} // namespace
 
 std::vector<InletNode> inlet_nodes(const InOutZones& inout, const RunField& field)
 {
@@ -46,7 +39,7 @@ std::vector<InletRim> leave_out_inlet_rims(const CaseDef& def, RunField& field)
         }
     std::vector<char> is_out(nodes.size());
     for (const Vec3& p : walls)
-        rows.for_each_near(p, nearest_dp * dp,
+        rows.for_each_near(p, off_inlets_dp * dp,
                            [&](std::uint32_t at, double) { is_out[owners[at]] = 1; });
     std::map<std::uint16_t, InletRim> rims;
     for (std::size_t i = 0; i < nodes.size(); ++i)

@@ -13,8 +13,6 @@ namespace fppg
 namespace
 {
 
-constexpr double before_inlet_dp = 0.7;
-
 Box3 grown(const Box3& box, double by)
 {
     return {box.min - Vec3{by, by, by}, box.max + Vec3{by, by, by}};
@@ -45,7 +43,7 @@ Box3 extent_of(const RunField& field)
 
 LatticeStrips::LatticeStrips(const CaseDef& def, const RunField& field)
     : reach_(2 * def.h + def.grid.dp),
-      before_inlet_(before_inlet_dp * def.grid.dp),
+      before_inlet_(off_inlets_dp * def.grid.dp),
       is_2d_(def.vres.is_2d),
       points_(reach_, 16)
 {
