@@ -216,8 +216,8 @@ void end_fluid_between_nodes(const std::array<bool, 3>& is_moved, const WetPlane
 {
     constexpr double half = 0.5;
     const FirstRows rows(planes, def.grid, half);
-    // Inlets are mostly drawn from the node beside a wall on, as a lattice that is not moved has it:
-    // exactly half a step off the row. Fluid that is missing there is added later, particles of
+    // Inlets are mostly drawn from the node beside a wall on, as a lattice that is not moved has
+    // it: exactly half a step off the row. Fluid that is missing there is added later, particles of
     // inlets are not.
     const FirstRows rows_of_inlets(planes, def.grid, half + same_place);
     const FirstRows none({}, def.grid, half);
